@@ -1,0 +1,91 @@
+//! What a caller may ask for beyond what the scene says, and how it follows the work.
+
+use jaspe_scene::Dialect;
+
+/// Choices that are made when a scene is compiled.
+#[derive(Debug, Clone, Default)]
+pub struct CompileOptions {
+    /// Whose meaning the scene's words have; `None` leaves it to the scene.
+    pub dialect: Option<Dialect>,
+    /// Width and height in pixels in place of the scene's own.
+    pub resolution: Option<[u32; 2]>,
+    /// Exactly this many samples per pixel, without adaptation.
+    pub samples: Option<u32>,
+    /// In place of the scene's `aa MIN MAX`.
+    pub aa: Option<[i32; 2]>,
+    /// A quick look in place of every shader.
+    pub look: Option<Look>,
+}
+
+/// Quick looks, as Sunflow's `quick` modes: every surface gets this shader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Look {
+    /// The shading normal, (n + 1) / 2.
+    Normals,
+    /// Texture coordinates as red and green.
+    Uvs,
+    /// A colour per object.
+    Ids,
+    /// Ambient occlusion.
+    AmbientOcclusion,
+    /// Matte grey under the scene's lights.
+    Gray,
+}
+
+/// Choices that are made for one rendering.
+#[derive(Debug, Clone, Default)]
+pub struct RenderOptions {
+    /// How many threads work; `None` means all that the machine has. The picture does not depend on it.
+    pub threads: Option<usize>,
+    /// Another seed gives other sampling noise.
+    pub seed: u64,
+    /// Renders only this part: x0, y0, x1, y1 in pixels, from the top left, ends excluded.
+    pub crop: Option<[u32; 4]>,
+}
+
+/// Follows a rendering, and may stop it. Called from several threads.
+pub trait Observer: Sync {
+    /// `done` of `total` units of work are finished; neither ever shrinks much, `total` may grow as pixels are refined.
+    fn progress(&self, done: u64, total: u64) {
+        let _ = (done, total);
+    }
+
+    /// Asked between tiles; true stops the rendering.
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// An observer that looks away.
+impl Observer for () {}
+
+/// The rendering was stopped by its [`Observer`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cancelled;
+
+impl std::fmt::Display for Cancelled {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("the rendering was stopped")
+    }
+}
+
+impl std::error::Error for Cancelled {}
+
+/// What a rendering did.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Camera samples traced.
+    pub samples: u64,
+    /// Rays from the camera.
+    pub camera_rays: u64,
+    /// Rays towards lights.
+    pub shadow_rays: u64,
+    /// Reflected and glossy rays.
+    pub reflection_rays: u64,
+    /// Refracted rays.
+    pub refraction_rays: u64,
+    /// Points at which a procedural texture was evaluated.
+    pub texture_points: u64,
+    /// Threads that worked.
+    pub threads: usize,
+}

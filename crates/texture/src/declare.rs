@@ -1,0 +1,72 @@
+//! How a texture (and every block of a scene) says what it is: a keyword, its parameters with kind, default, range
+//! and one sentence each. Parser, help texts, reference pages and language bindings walk these lists and keep none
+//! of their own.
+
+/// What a declared thing is called, what it is, and which parameters it takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Declaration {
+    /// The keyword, as written in a scene (`marble`).
+    pub name: &'static str,
+    /// One sentence for lists and help texts.
+    pub summary: &'static str,
+    /// The parameters, in the order of the reference page.
+    pub parameters: &'static [Parameter],
+}
+
+impl Declaration {
+    /// The parameter called `name`, if there is one.
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+}
+
+/// One parameter of a [`Declaration`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// The keyword, as written in a scene (`depth`).
+    pub name: &'static str,
+    /// What may be written, and within which range.
+    pub kind: Kind,
+    /// What stands when nothing is written.
+    pub default: Value,
+    /// One sentence, with the unit where there is one.
+    pub summary: &'static str,
+}
+
+/// What a parameter takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// A whole number from `min` to `max`.
+    Int {
+        /// The smallest value allowed.
+        min: i64,
+        /// The largest value allowed.
+        max: i64,
+    },
+    /// A finite number from `min` to `max`.
+    Float {
+        /// The smallest value allowed.
+        min: f64,
+        /// The largest value allowed.
+        max: f64,
+    },
+    /// A colour; three display-encoded (sRGB) components from 0 to 1.
+    Color,
+    /// One of these words.
+    Choice(&'static [&'static str]),
+}
+
+/// The value of a parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// Of a [`Kind::Int`].
+    Int(i64),
+    /// Of a [`Kind::Float`].
+    Float(f64),
+    /// Of a [`Kind::Color`]: display-encoded red, green, blue.
+    Color([f64; 3]),
+    /// Of a [`Kind::Choice`].
+    Choice(&'static str),
+    /// The default of a parameter whose value follows from its surroundings; never written.
+    Auto,
+}

@@ -1,0 +1,2 @@
+//! Procedural materials.
+pub mod declare;
