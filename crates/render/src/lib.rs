@@ -7,11 +7,17 @@
 //! [`compile`] resolves names, bakes transforms and builds the hierarchy; what it returns is immutable and valid, so
 //! that [`render`] cannot fail. This crate prints nothing and opens no file itself.
 
+mod develop;
+mod encode;
 mod film;
 mod options;
+mod picture;
 
+pub use develop::{Alpha, Depth, Image, Samples, develop, srgb_decode, srgb_encode};
+pub use encode::{EncodeError, Format, UnknownFormat, encode};
 pub use film::{Encoding, Film, Pixel};
 pub use options::{Cancelled, CompileOptions, Look, Observer, RenderOptions, Stats};
+pub use picture::{DecodeError, Picture, PicturePixels};
 
 use jaspe_scene::{Diagnostics, Loader, Scene};
 
