@@ -1,1 +1,63 @@
-//! Noise.
+//! Lattice noises and fractal sums: points in, numbers out, the same bits on every machine.
+//!
+//! ```
+//! use jaspe_noise::{Basis, Combine, Noise, Sum};
+//!
+//! // One value in double precision, with its exact gradient.
+//! let noise = Noise::new(Basis::Improved, 0);
+//! assert_eq!(noise.value([0.5, 0.25, 0.5]), -0.262939453125);
+//! let (value, gradient) = noise.value_and_gradient([3.14f64, 42.0, 7.0]);
+//! assert_eq!(value, 0.13691995878400012);
+//! assert!((gradient[1] + 0.956).abs() < 1e-5);
+//!
+//! // Many values: slices of coordinates in, a slice of values out, on the widest registers of the machine.
+//! let x: Vec<f32> = (0..1000).map(|i| 0.01 * i as f32).collect();
+//! let turbulence = Sum::new(noise, Combine::Absolute, 5);
+//! let mut values = vec![0.0; 1000];
+//! turbulence.fill([&x, &x, &x], &mut values);
+//! assert_eq!(values[0], 0.0);
+//! ```
+//!
+//! # The noises
+//!
+//! | [`Basis`] | what | range in 3-D | mean | mean of the absolute value |
+//! |---|---|---|---|---|
+//! | `Improved` | gradient noise of \[Perlin 2002\], exactly his listing | within [-1.04, 1.04] | 0 | 0.220 |
+//! | `Classic` | gradient noise of \[Perlin 1985\]: unit gradients, cubic curve | within [-0.87, 0.87] | 0 | 0.148 |
+//! | `Lattice` | random values at the lattice points, interpolated by the cubic curve | [-1, 1] | 0 | 0.303 |
+//!
+//! All have two and three dimensions (two are the slice z = 0 of three), a seed (0 is the published table), and the
+//! period 256 on each axis, or any smaller or larger integer period: [`Noise::with_period`].
+//!
+//! # Promises
+//!
+//! * One evaluation, [`Noise::value`] and [`Sum::value`], generic over the number type ([`Real`]): `f64`, `f32`,
+//!   vectors of `f32`, and [`Dual`] numbers, which carry exact gradients.
+//! * [`Noise::fill`] and [`Sum::fill`] give the same bits as the `f32` evaluation, whatever the instruction set and the
+//!   length of the slices. A zero is always `+0`. (`JASPE_SIMD=scalar|sse|avx2|avx512` caps the instruction set.)
+//! * No input panics. A coordinate that is infinite or NaN gives NaN. Far from the origin, where neighbouring numbers
+//!   are a whole unit apart, every point is a lattice point.
+//! * Nothing is allocated while evaluating.
+//!
+//! # Sources
+//!
+//! * \[Perlin 1985\]: K. Perlin, "An Image Synthesizer", SIGGRAPH 1985.
+//! * \[Perlin 2002\]: K. Perlin, "Improving Noise", SIGGRAPH 2002, and the listing that he published with it.
+
+#![deny(unsafe_code)]
+
+mod basis;
+pub mod math;
+mod noise;
+mod number;
+mod seed;
+#[allow(unsafe_code, reason = "intrinsics, behind types that exist only on machines that have the instructions")]
+pub mod simd;
+mod sum;
+mod table;
+
+pub use basis::Basis;
+pub use noise::{Noise, PeriodError};
+pub use number::{Dual, Integer, Mask, Real};
+pub use sum::{Combine, Sum};
+pub use table::{ByteTable, FloatTable, PairTable};

@@ -1,0 +1,70 @@
+//! Nanoseconds a point and octave of each basis and sum, at each level: `cargo run --release --example speed`.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use jaspe_noise::simd::{Level, machine_level};
+use jaspe_noise::{Basis, Combine, Noise, Sum};
+
+/// The median of some runs, in nanoseconds a point.
+fn median(points: usize, mut work: impl FnMut()) -> f64 {
+    work();
+    let mut times: Vec<f64> = (0..15)
+        .map(|_| {
+            let start = Instant::now();
+            let mut rounds = 0;
+            while start.elapsed().as_millis() < 8 {
+                work();
+                rounds += 1;
+            }
+            start.elapsed().as_secs_f64() * 1e9 / (f64::from(rounds) * points as f64)
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+fn main() {
+    const COUNT: usize = 16_384;
+    let mut state = 1u64;
+    let mut coordinates = || -> Vec<f32> {
+        (0..COUNT)
+            .map(|_| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                ((state >> 40) as f32 / (1 << 23) as f32 - 1.0) * 50.0
+            })
+            .collect()
+    };
+    let (x, y, z) = (coordinates(), coordinates(), coordinates());
+    let mut values = vec![0.0; COUNT];
+    println!(
+        "{:10} {:8} {:>9} {:>9} {:>9} {:>9} {:>9}",
+        "basis", "level", "space", "plane", "sum of 7", "of 64", "single"
+    );
+    for &basis in Basis::ALL {
+        let noise = Noise::new(basis, 0);
+        let sum = Sum::new(noise.clone(), Combine::Absolute, 7);
+        for level in Level::ALL.into_iter().filter(|&level| level <= machine_level()) {
+            let space = median(COUNT, || noise.fill_at(level, [&x, &y, &z], black_box(&mut values)));
+            let plane = median(COUNT, || noise.fill_at(level, [&x, &y], black_box(&mut values)));
+            let octave = median(7 * COUNT, || sum.fill_at(level, [&x, &y, &z], black_box(&mut values)));
+            let small = median(COUNT, || {
+                for start in (0..COUNT).step_by(64) {
+                    let at = start..start + 64;
+                    let points = [&x[at.clone()], &y[at.clone()], &z[at.clone()]];
+                    noise.fill_at(level, points, black_box(&mut values[at]));
+                }
+            });
+            let single = median(COUNT, || {
+                for i in 0..COUNT {
+                    values[i] = noise.value(black_box([x[i], y[i], z[i]]));
+                }
+            });
+            println!(
+                "{:10} {:8} {space:9.3} {plane:9.3} {octave:9.3} {small:9.3} {single:9.3}",
+                basis.name(),
+                level.name()
+            );
+        }
+    }
+}

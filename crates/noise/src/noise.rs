@@ -1,0 +1,124 @@
+//! A noise ready to evaluate: a basis, the tables of a seed, a period.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::basis::{Basis, Period, Tables, classic, improved, lattice};
+use crate::number::{Dual, Real};
+use crate::simd::{self, Kernel, Level};
+
+/// A noise: points in, numbers out. Cheap to clone; immutable.
+#[derive(Debug, Clone)]
+pub struct Noise {
+    basis: Basis,
+    seed: u64,
+    period: Period,
+    tables: Arc<Tables>,
+}
+
+/// Why [`Noise::with_period`] refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PeriodError {
+    /// The axis, from 0.
+    pub axis: usize,
+    /// The period that was asked for.
+    pub period: u32,
+}
+
+impl fmt::Display for PeriodError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let axis = ["x", "y", "z"][self.axis.min(2)];
+        write!(formatter, "expected a period up to {} along {axis}, found {}", Noise::LONGEST_PERIOD, self.period)
+    }
+}
+
+impl std::error::Error for PeriodError {}
+
+impl Noise {
+    /// The longest period that an axis may have: up to here single precision counts cells one by one.
+    pub const LONGEST_PERIOD: u32 = 1 << 24;
+
+    /// The noise of this basis and seed. Seed 0 has the published permutation, other seeds a shuffle of it.
+    pub fn new(basis: Basis, seed: u64) -> Self {
+        Noise { basis, seed, period: [0.0; 3], tables: Arc::new(Tables::new(seed)) }
+    }
+
+    /// The same noise, repeating after so many cells along x, y and z: the value at p and at p + period are the same
+    /// bits wherever single precision represents both points exactly. 0 leaves an axis at the table's 256.
+    ///
+    /// # Errors
+    /// When a period is longer than [`Noise::LONGEST_PERIOD`].
+    pub fn with_period(mut self, period: [u32; 3]) -> Result<Self, PeriodError> {
+        if let Some(axis) = period.iter().position(|&cells| cells > Self::LONGEST_PERIOD) {
+            return Err(PeriodError { axis, period: period[axis] });
+        }
+        self.period = period.map(f64::from);
+        Ok(self)
+    }
+
+    /// The basis.
+    pub fn basis(&self) -> Basis {
+        self.basis
+    }
+
+    /// The seed.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The value at a point of two or three dimensions (two: the slice z = 0), in the precision of the number type.
+    #[inline(always)]
+    pub fn value<R: Real, const D: usize>(&self, point: [R; D]) -> R {
+        self.octave(point, 1.0)
+    }
+
+    /// The value at a point, and its exact derivative along each axis.
+    pub fn value_and_gradient<R: Real, const D: usize>(&self, point: [R; D]) -> (R, [R; D]) {
+        let dual = self.value(Dual::point(point));
+        (dual.value, dual.gradient)
+    }
+
+    /// The values at many points: one slice of coordinates per axis (two or three), one slice for the values. The same
+    /// bits as [`Noise::value`] in single precision.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn fill<const D: usize>(&self, points: [&[f32]; D], values: &mut [f32]) {
+        self.fill_at(simd::level(), points, values);
+    }
+
+    /// [`Noise::fill`] with the instructions of a level, at most those of the machine. For tests and measurements.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn fill_at<const D: usize>(&self, level: Level, points: [&[f32]; D], values: &mut [f32]) {
+        simd::map_at(level, self, points, values);
+    }
+
+    /// The value at a point that has been multiplied by `frequency`, which lengthens the period (counted in cells).
+    #[inline(always)]
+    pub(crate) fn octave<R: Real, const D: usize>(&self, point: [R; D], frequency: f64) -> R {
+        const { assert!(D == 2 || D == 3, "a noise has two or three dimensions") };
+        let [x, y, z] = self.period;
+        let period = [x * frequency, y * frequency, z * frequency];
+        match self.basis {
+            Basis::Improved => improved::value(&self.tables, point, &period),
+            Basis::Classic => classic::value(&self.tables, point, &period),
+            Basis::Lattice => lattice::value(&self.tables, point, &period),
+        }
+    }
+}
+
+impl PartialEq for Noise {
+    /// The tables follow from the seed.
+    fn eq(&self, other: &Self) -> bool {
+        (self.basis, self.seed, self.period) == (other.basis, other.seed, other.period)
+    }
+}
+
+impl<const D: usize> Kernel<D> for Noise {
+    #[inline(always)]
+    fn run<R: Real>(&self, point: [R; D]) -> R {
+        self.value(point)
+    }
+}

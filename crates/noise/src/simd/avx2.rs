@@ -1,0 +1,182 @@
+//! Eight lanes: AVX2 and FMA. Tables are read by gathers.
+
+use std::arch::x86_64::*;
+use std::ops::{Neg, Not};
+
+use super::{Vector, operators};
+use crate::number::{Integer, Mask, Real};
+use crate::table::{ByteTable, FloatTable, PairTable};
+
+// SAFETY, for all `unsafe` blocks of this file: these types are private to `simd`, and values of them arise only in
+// functions entered after the machine was found to have AVX2 and FMA.
+
+/// Eight numbers.
+#[derive(Clone, Copy)]
+pub(super) struct F32x8(__m256);
+/// Eight integers.
+#[derive(Clone, Copy)]
+pub(super) struct I32x8(__m256i);
+/// All bits of a lane, or none.
+#[derive(Clone, Copy)]
+pub(super) struct M32x8(__m256);
+
+operators! { F32x8: Add add _mm256_add_ps; Sub sub _mm256_sub_ps; Mul mul _mm256_mul_ps; Div div _mm256_div_ps; }
+operators! { I32x8: Add add _mm256_add_epi32; Sub sub _mm256_sub_epi32; Mul mul _mm256_mullo_epi32; }
+operators! { I32x8: BitAnd bitand _mm256_and_si256; BitOr bitor _mm256_or_si256; BitXor bitxor _mm256_xor_si256; }
+operators! { M32x8: BitAnd bitand _mm256_and_ps; BitOr bitor _mm256_or_ps; }
+
+impl Not for M32x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        M32x8(unsafe { _mm256_xor_ps(self.0, _mm256_castsi256_ps(_mm256_set1_epi32(-1))) })
+    }
+}
+
+impl Neg for F32x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        F32x8(unsafe { _mm256_xor_ps(self.0, _mm256_set1_ps(-0.0)) })
+    }
+}
+
+impl Mask for M32x8 {}
+
+impl I32x8 {
+    /// The table's words at the low eight bits of each lane.
+    #[inline(always)]
+    fn gather(self, words: &[i32; 256]) -> Self {
+        // The masked index lies within the table.
+        I32x8(unsafe { _mm256_i32gather_epi32::<4>(words.as_ptr(), (self & Self::constant(255)).0) })
+    }
+}
+
+impl Integer for I32x8 {
+    type Mask = M32x8;
+    #[inline(always)]
+    fn constant(value: i32) -> Self {
+        I32x8(unsafe { _mm256_set1_epi32(value) })
+    }
+    #[inline(always)]
+    fn shift_left(self, count: u32) -> Self {
+        I32x8(unsafe { _mm256_sll_epi32(self.0, _mm_cvtsi32_si128(count as i32)) })
+    }
+    #[inline(always)]
+    fn shift_right(self, count: u32) -> Self {
+        I32x8(unsafe { _mm256_srl_epi32(self.0, _mm_cvtsi32_si128(count as i32)) })
+    }
+    #[inline(always)]
+    fn equals(self, other: Self) -> M32x8 {
+        M32x8(unsafe { _mm256_castsi256_ps(_mm256_cmpeq_epi32(self.0, other.0)) })
+    }
+}
+
+impl Real for F32x8 {
+    type Int = I32x8;
+    type Mask = M32x8;
+    const DOUBLE: bool = false;
+
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        F32x8(unsafe { _mm256_set1_ps(value as f32) })
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        F32x8(unsafe { _mm256_floor_ps(self.0) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        F32x8(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        F32x8(unsafe { _mm256_sqrt_ps(self.0) })
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> M32x8 {
+        M32x8(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn select(mask: M32x8, yes: Self, no: Self) -> Self {
+        F32x8(unsafe { _mm256_blendv_ps(no.0, yes.0, mask.0) })
+    }
+    #[inline(always)]
+    fn to_int(self) -> I32x8 {
+        I32x8(unsafe { _mm256_cvttps_epi32(self.0) })
+    }
+    #[inline(always)]
+    fn from_int(value: I32x8) -> Self {
+        F32x8(unsafe { _mm256_cvtepi32_ps(value.0) })
+    }
+    #[inline(always)]
+    fn times_power_of_two(self, exponent: I32x8) -> Self {
+        let bits = (exponent + I32x8::constant(127)).shift_left(23);
+        self * F32x8(unsafe { _mm256_castsi256_ps(bits.0) })
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let bits = I32x8(unsafe { _mm256_castps_si256(self.0) });
+        let mantissa = bits & I32x8::constant(0x7f_ffff) | I32x8::constant(127 << 23);
+        let exponent = Self::from_int(bits.shift_right(23) - I32x8::constant(127));
+        (F32x8(unsafe { _mm256_castsi256_ps(mantissa.0) }), exponent)
+    }
+    #[inline(always)]
+    fn lookup(table: &ByteTable, index: I32x8) -> I32x8 {
+        index.gather(&table.words)
+    }
+    #[inline(always)]
+    fn lookup_pair(table: &PairTable, index: I32x8) -> (I32x8, I32x8) {
+        let pairs = index.gather(&table.pairs);
+        (pairs, pairs.shift_right(8))
+    }
+    #[inline(always)]
+    fn pick(table: &FloatTable, index: I32x8) -> Self {
+        let index = index & I32x8::constant(255);
+        // The masked index lies within the table.
+        F32x8(unsafe { _mm256_i32gather_ps::<4>(table.singles.as_ptr(), index.0) })
+    }
+
+    /// The components come from tables in registers. Their products with 0, 1 and −1 are exact, and so is fusing them
+    /// with the addition.
+    #[inline(always)]
+    fn edge_dot(code: I32x8, x: Self, y: Self, z: Self) -> Self {
+        unsafe {
+            let line_x = _mm256_setr_ps(1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0);
+            let line_y = _mm256_setr_ps(1.0, -1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0);
+            let line_z = _mm256_setr_ps(0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0);
+            let product = _mm256_mul_ps(_mm256_permutevar8x32_ps(line_z, code.0), z.0);
+            let product = _mm256_fmadd_ps(_mm256_permutevar8x32_ps(line_y, code.0), y.0, product);
+            F32x8(_mm256_fmadd_ps(_mm256_permutevar8x32_ps(line_x, code.0), x.0, product)).negated_by(code)
+        }
+    }
+    #[inline(always)]
+    fn edge_dot_plane(code: I32x8, x: Self, y: Self) -> Self {
+        unsafe {
+            let line_x = _mm256_setr_ps(1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0);
+            let line_y = _mm256_setr_ps(1.0, -1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0);
+            let product = _mm256_mul_ps(_mm256_permutevar8x32_ps(line_y, code.0), y.0);
+            F32x8(_mm256_fmadd_ps(_mm256_permutevar8x32_ps(line_x, code.0), x.0, product)).negated_by(code)
+        }
+    }
+}
+
+impl F32x8 {
+    /// Negated where bit 3 of `code` is set.
+    #[inline(always)]
+    fn negated_by(self, code: I32x8) -> Self {
+        let sign = code.shift_left(28) & I32x8::constant(i32::MIN);
+        F32x8(unsafe { _mm256_xor_ps(self.0, _mm256_castsi256_ps(sign.0)) })
+    }
+}
+
+impl Vector<8> for F32x8 {
+    #[inline(always)]
+    fn load(lanes: &[f32; 8]) -> Self {
+        F32x8(unsafe { _mm256_loadu_ps(lanes.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self, lanes: &mut [f32; 8]) {
+        unsafe { _mm256_storeu_ps(lanes.as_mut_ptr(), self.0) }
+    }
+}

@@ -1,0 +1,180 @@
+//! Sixteen lanes: AVX-512 with VBMI. Tables of bytes are read from four registers, 64 bytes at a time.
+
+use std::arch::x86_64::*;
+use std::ops::{Neg, Not};
+
+use super::{Vector, operators};
+use crate::number::{Integer, Mask, Real};
+use crate::table::{ByteTable, FloatTable, PairTable};
+
+// SAFETY, for all `unsafe` blocks of this file: these types are private to `simd`, and values of them arise only in
+// functions entered after the machine was found to have AVX-512 with VBMI.
+
+/// Sixteen numbers.
+#[derive(Clone, Copy)]
+pub(super) struct F32x16(__m512);
+/// Sixteen integers.
+#[derive(Clone, Copy)]
+pub(super) struct I32x16(__m512i);
+/// A bit per lane.
+#[derive(Clone, Copy)]
+pub(super) struct M32x16(__mmask16);
+
+operators! { F32x16: Add add _mm512_add_ps; Sub sub _mm512_sub_ps; Mul mul _mm512_mul_ps; Div div _mm512_div_ps; }
+operators! { I32x16: Add add _mm512_add_epi32; Sub sub _mm512_sub_epi32; Mul mul _mm512_mullo_epi32; }
+operators! { I32x16: BitAnd bitand _mm512_and_si512; BitOr bitor _mm512_or_si512; BitXor bitxor _mm512_xor_si512; }
+operators! { M32x16: BitAnd bitand _kand_mask16; BitOr bitor _kor_mask16; }
+
+impl Not for M32x16 {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        M32x16(!self.0)
+    }
+}
+
+impl Neg for F32x16 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        F32x16(unsafe { _mm512_xor_ps(self.0, _mm512_set1_ps(-0.0)) })
+    }
+}
+
+impl Mask for M32x16 {}
+
+impl I32x16 {
+    /// The table's bytes at each byte of the lanes (of which the lowest matters).
+    #[inline(always)]
+    fn permuted(self, bytes: &[u8; 256]) -> Self {
+        unsafe {
+            let quarters: *const __m512i = bytes.as_ptr().cast();
+            let (first, second) = (_mm512_loadu_si512(quarters), _mm512_loadu_si512(quarters.add(1)));
+            let (third, fourth) = (_mm512_loadu_si512(quarters.add(2)), _mm512_loadu_si512(quarters.add(3)));
+            let low = _mm512_permutex2var_epi8(first, self.0, second);
+            let high = _mm512_permutex2var_epi8(third, self.0, fourth);
+            I32x16(_mm512_mask_blend_epi8(_mm512_movepi8_mask(self.0), low, high))
+        }
+    }
+}
+
+impl Integer for I32x16 {
+    type Mask = M32x16;
+    #[inline(always)]
+    fn constant(value: i32) -> Self {
+        I32x16(unsafe { _mm512_set1_epi32(value) })
+    }
+    #[inline(always)]
+    fn shift_left(self, count: u32) -> Self {
+        I32x16(unsafe { _mm512_sll_epi32(self.0, _mm_cvtsi32_si128(count as i32)) })
+    }
+    #[inline(always)]
+    fn shift_right(self, count: u32) -> Self {
+        I32x16(unsafe { _mm512_srl_epi32(self.0, _mm_cvtsi32_si128(count as i32)) })
+    }
+    #[inline(always)]
+    fn equals(self, other: Self) -> M32x16 {
+        M32x16(unsafe { _mm512_cmpeq_epi32_mask(self.0, other.0) })
+    }
+}
+
+impl Real for F32x16 {
+    type Int = I32x16;
+    type Mask = M32x16;
+    const DOUBLE: bool = false;
+
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        F32x16(unsafe { _mm512_set1_ps(value as f32) })
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        F32x16(unsafe { _mm512_roundscale_ps::<{ _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC }>(self.0) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        F32x16(unsafe { _mm512_abs_ps(self.0) })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        F32x16(unsafe { _mm512_sqrt_ps(self.0) })
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> M32x16 {
+        M32x16(unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn select(mask: M32x16, yes: Self, no: Self) -> Self {
+        F32x16(unsafe { _mm512_mask_blend_ps(mask.0, no.0, yes.0) })
+    }
+    #[inline(always)]
+    fn to_int(self) -> I32x16 {
+        I32x16(unsafe { _mm512_cvttps_epi32(self.0) })
+    }
+    #[inline(always)]
+    fn from_int(value: I32x16) -> Self {
+        F32x16(unsafe { _mm512_cvtepi32_ps(value.0) })
+    }
+    #[inline(always)]
+    fn times_power_of_two(self, exponent: I32x16) -> Self {
+        let bits = (exponent + I32x16::constant(127)).shift_left(23);
+        self * F32x16(unsafe { _mm512_castsi512_ps(bits.0) })
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let bits = I32x16(unsafe { _mm512_castps_si512(self.0) });
+        let mantissa = bits & I32x16::constant(0x7f_ffff) | I32x16::constant(127 << 23);
+        let exponent = Self::from_int(bits.shift_right(23) - I32x16::constant(127));
+        (F32x16(unsafe { _mm512_castsi512_ps(mantissa.0) }), exponent)
+    }
+    #[inline(always)]
+    fn lookup(table: &ByteTable, index: I32x16) -> I32x16 {
+        index.permuted(&table.bytes)
+    }
+    #[inline(always)]
+    fn lookup_pair(table: &PairTable, index: I32x16) -> (I32x16, I32x16) {
+        (index.permuted(&table.bytes), index.permuted(&table.next))
+    }
+    #[inline(always)]
+    fn pick(table: &FloatTable, index: I32x16) -> Self {
+        let index = index & I32x16::constant(255);
+        // The masked index lies within the table.
+        F32x16(unsafe { _mm512_i32gather_ps::<4>(index.0, table.singles.as_ptr()) })
+    }
+
+    /// The components come from tables in registers, by the low four bits. Their products with 0, 1 and −1 are exact,
+    /// and so is fusing them with the addition.
+    #[inline(always)]
+    fn edge_dot(code: I32x16, x: Self, y: Self, z: Self) -> Self {
+        unsafe {
+            let product = _mm512_mul_ps(_mm512_permutexvar_ps(code.0, _mm512_loadu_ps(EDGE_Z.as_ptr())), z.0);
+            let edge_y = _mm512_permutexvar_ps(code.0, _mm512_loadu_ps(EDGE_Y.as_ptr()));
+            let edge_x = _mm512_permutexvar_ps(code.0, _mm512_loadu_ps(EDGE_X.as_ptr()));
+            F32x16(_mm512_fmadd_ps(edge_x, x.0, _mm512_fmadd_ps(edge_y, y.0, product)))
+        }
+    }
+    #[inline(always)]
+    fn edge_dot_plane(code: I32x16, x: Self, y: Self) -> Self {
+        unsafe {
+            let product = _mm512_mul_ps(_mm512_permutexvar_ps(code.0, _mm512_loadu_ps(EDGE_Y.as_ptr())), y.0);
+            let edge_x = _mm512_permutexvar_ps(code.0, _mm512_loadu_ps(EDGE_X.as_ptr()));
+            F32x16(_mm512_fmadd_ps(edge_x, x.0, product))
+        }
+    }
+}
+
+/// The components of the edge directions, by code: see [`Real::edge_dot`].
+const EDGE_X: [f32; 16] = [1., 1., 1., 1., 0., 0., 0., 0., -1., -1., -1., -1., 0., 0., 0., 0.];
+const EDGE_Y: [f32; 16] = [1., -1., 0., 0., 1., 1., 0., 0., -1., 1., 0., 0., -1., -1., 0., 0.];
+const EDGE_Z: [f32; 16] = [0., 0., 1., -1., 1., -1., 0., 0., 0., 0., -1., 1., -1., 1., 0., 0.];
+
+impl Vector<16> for F32x16 {
+    #[inline(always)]
+    fn load(lanes: &[f32; 16]) -> Self {
+        F32x16(unsafe { _mm512_loadu_ps(lanes.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self, lanes: &mut [f32; 16]) {
+        unsafe { _mm512_storeu_ps(lanes.as_mut_ptr(), self.0) }
+    }
+}

@@ -1,0 +1,125 @@
+//! Every instruction set, every basis and sum, every length of a batch: the same bits.
+
+use jaspe_noise::simd::{Kernel, Level, map_at};
+use jaspe_noise::{Basis, Combine, Integer, Noise, Real, Sum, math};
+
+/// Points near and far, on lattice points and beside them, and no numbers at all.
+fn coordinates(count: usize, salt: u64) -> Vec<f32> {
+    let mut state = 0x9e37_79b9_7f4a_7c15u64.wrapping_mul(salt + 1);
+    let special =
+        [0.0, -0.0, 1.0, -1.0, 0.5, -1e-10, 255.99, -256.0, 1e9, -3e9, 1e20, f32::MAX, f32::NAN, f32::INFINITY];
+    (0..count)
+        .map(|i| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let unit = (state >> 40) as f32 / (1 << 23) as f32 - 1.0;
+            match (i as u64 + salt) % 19 {
+                0 => special[(state >> 20) as usize % special.len()],
+                1..=3 => (unit * 1000.0).floor(),
+                4..=6 => unit * 1e6,
+                _ => unit * 40.0,
+            }
+        })
+        .collect()
+}
+
+fn same(a: f32, b: f32) -> bool {
+    a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
+}
+
+/// Runs `fill` at every level and on pieces of many lengths, and holds all results to `expected`.
+fn check(name: &str, expected: &[f32], fill: impl Fn(Level, std::ops::Range<usize>, &mut [f32])) {
+    for level in Level::ALL {
+        let mut values = vec![f32::MAX; expected.len()];
+        fill(level, 0..expected.len(), &mut values);
+        let wrong = (0..expected.len()).find(|&i| !same(values[i], expected[i]));
+        assert_eq!(wrong, None, "{name} at {level:?}: {:?}", wrong.map(|i| (values[i], expected[i])));
+        let mut start = 0;
+        for length in (0..140).chain([255, 256, 257, 400]) {
+            let mut values = vec![f32::MAX; length];
+            fill(level, start..start + length, &mut values);
+            let wrong = (0..length).find(|&i| !same(values[i], expected[start + i]));
+            assert_eq!(wrong, None, "{name} at {level:?}, {length} points");
+            start = (start + length) % 3000;
+        }
+    }
+}
+
+#[test]
+fn every_basis_and_sum_has_the_same_bits_at_every_level() {
+    let [x, y, z] = [1, 2, 3].map(|salt| coordinates(4000, salt));
+    for &basis in Basis::ALL {
+        for (seed, period) in [(0, [0; 3]), (9, [3, 0, 300])] {
+            let noise = Noise::new(basis, seed).with_period(period).unwrap();
+            let name = format!("{basis:?} {period:?}");
+            let expected: Vec<f32> = (0..4000).map(|i| noise.value([x[i], y[i], z[i]])).collect();
+            check(&name, &expected, |level, at, values| {
+                noise.fill_at(level, [&x[at.clone()], &y[at.clone()], &z[at]], values);
+            });
+            let expected: Vec<f32> = (0..4000).map(|i| noise.value([x[i], y[i]])).collect();
+            check(&name, &expected, |level, at, values| noise.fill_at(level, [&x[at.clone()], &y[at]], values));
+            for &combine in Combine::ALL {
+                let sum = Sum::new(noise.clone(), combine, 6);
+                let expected: Vec<f32> = (0..4000).map(|i| sum.value([x[i], y[i], z[i]])).collect();
+                check(&format!("{name} {combine:?}"), &expected, |level, at, values| {
+                    sum.fill_at(level, [&x[at.clone()], &y[at.clone()], &z[at]], values);
+                });
+                let expected: Vec<f32> = (0..4000).map(|i| sum.value([x[i], y[i]])).collect();
+                check(&format!("{name} {combine:?}"), &expected, |level, at, values| {
+                    sum.fill_at(level, [&x[at.clone()], &y[at]], values);
+                });
+            }
+        }
+    }
+}
+
+/// One of the elementary functions, by its place in a list.
+struct Function(usize);
+
+impl Kernel<2> for Function {
+    #[inline(always)]
+    fn run<R: Real>(&self, [x, y]: [R; 2]) -> R {
+        match self.0 {
+            0 => math::sin(x),
+            1 => math::cos(x),
+            2 => math::exp(x),
+            3 => math::ln(x),
+            4 => math::pow(x, y),
+            5 => x.abs().sqrt(),
+            6 => x.min(y) - x.max(y) * x / y,
+            7 => R::select(!x.less(y) & x.less(R::constant(9.0)) | y.less(x), -x, y),
+            _ => {
+                let bounded =
+                    R::select(x.abs().less(R::constant(1e9)), x, y.min(R::constant(1e9)).max(R::constant(-1e9)));
+                let (a, b) = (bounded.floor().to_int(), R::Int::constant(0x2545_f491));
+                let mixed = (a * b) ^ (a - b).shift_right(7) ^ (a | b).shift_left(3);
+                R::from_int(mixed & R::Int::constant(0x00ff_ffff))
+            }
+        }
+    }
+}
+
+#[test]
+fn numbers_and_elementary_functions_have_the_same_bits_at_every_level() {
+    let [x, y] = [4, 5].map(|salt| coordinates(4000, salt));
+    for index in 0..9 {
+        let function = Function(index);
+        let expected: Vec<f32> = (0..4000).map(|i| function.run([x[i], y[i]])).collect();
+        check(&format!("function {index}"), &expected, |level, at, values| {
+            map_at(level, &function, [&x[at.clone()], &y[at]], values);
+        });
+    }
+}
+
+#[test]
+fn levels_have_names_and_stay_within_the_machines() {
+    for level in Level::ALL {
+        assert_eq!(Level::from_name(level.name()), Some(level));
+    }
+    assert!(jaspe_noise::simd::level() <= jaspe_noise::simd::machine_level());
+}
+
+#[test]
+#[should_panic(expected = "all slices have the same length")]
+fn slices_of_different_lengths_are_refused() {
+    Noise::new(Basis::Improved, 0).fill([&[0.0; 3], &[0.0; 2]], &mut [0.0; 3]);
+}

@@ -1,0 +1,269 @@
+//! Values that are known from elsewhere, and properties that hold everywhere.
+
+#![allow(clippy::approx_constant, reason = "3.14 is a coordinate of a published check value")]
+
+use jaspe_noise::{Basis, Combine, Noise, Sum};
+
+/// Improved noise as [Perlin 2002] tells it in prose and tables, apart from the crate's code: hashing by a doubled table
+/// of the seed's permutation, gradients as vectors.
+struct Listing {
+    table: Vec<u8>,
+}
+
+impl Listing {
+    /// The gradients in the order of the hash values: twelve edges, and four of them again.
+    const GRADIENTS: [[f64; 3]; 16] = [
+        [1.0, 1.0, 0.0],
+        [-1.0, 1.0, 0.0],
+        [1.0, -1.0, 0.0],
+        [-1.0, -1.0, 0.0],
+        [1.0, 0.0, 1.0],
+        [-1.0, 0.0, 1.0],
+        [1.0, 0.0, -1.0],
+        [-1.0, 0.0, -1.0],
+        [0.0, 1.0, 1.0],
+        [0.0, -1.0, 1.0],
+        [0.0, 1.0, -1.0],
+        [0.0, -1.0, -1.0],
+        [1.0, 1.0, 0.0],
+        [0.0, -1.0, 1.0],
+        [-1.0, 1.0, 0.0],
+        [0.0, -1.0, -1.0],
+    ];
+
+    fn new() -> Self {
+        let text = include_str!("permutation.txt");
+        let once: Vec<u8> = text.split_whitespace().map(|number| number.parse().unwrap()).collect();
+        assert_eq!(once.len(), 256);
+        Listing { table: [once.clone(), once].concat() }
+    }
+
+    fn hash(&self, corner: [i64; 3]) -> u8 {
+        let [x, y, z] = corner.map(|coordinate| coordinate.rem_euclid(256) as usize);
+        let at_x = usize::from(self.table[x]);
+        let at_xy = usize::from(self.table[at_x + y]);
+        self.table[at_xy + z]
+    }
+
+    /// Also tells which gradients took part.
+    fn value(&self, point: [f64; 3], seen: &mut [bool; 16]) -> f64 {
+        let cell = point.map(|coordinate| coordinate.floor());
+        let mut dots = [0.0; 8];
+        for (i, dot) in dots.iter_mut().enumerate() {
+            let step = [i & 1, i >> 1 & 1, i >> 2 & 1];
+            let corner = std::array::from_fn(|axis| cell[axis] as i64 + step[axis] as i64);
+            let gradient = usize::from(self.hash(corner) % 16);
+            seen[gradient] = true;
+            for axis in 0..3 {
+                *dot += Self::GRADIENTS[gradient][axis] * (point[axis] - cell[axis] - step[axis] as f64);
+            }
+        }
+        let weight = |axis: usize| {
+            let t = point[axis] - cell[axis];
+            t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
+        };
+        // Halve the corners axis by axis.
+        let mut count = 8;
+        for axis in 0..3 {
+            count /= 2;
+            for i in 0..count {
+                dots[i] = dots[2 * i] + weight(axis) * (dots[2 * i + 1] - dots[2 * i]);
+            }
+        }
+        dots[0]
+    }
+}
+
+/// Numbers in [-1, 1), reproducible.
+fn random_numbers() -> impl FnMut() -> f64 {
+    let mut state = 88_172_645_463_325_252u64;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+#[test]
+fn improved_noise_has_the_published_values() {
+    let noise = Noise::new(Basis::Improved, 0);
+    assert_eq!(noise.value([0.5, 0.25, 0.5]), -0.262939453125);
+    assert_eq!(noise.value([3.14, 42.0, 7.0]), 0.13691995878400012);
+    assert_eq!(noise.value([-4.20, 10.0, 6.0]), 0.14208000000000043);
+    assert_eq!(noise.value([0.5f32, 0.25, 0.5]), -0.262_939_45);
+}
+
+#[test]
+fn improved_noise_equals_an_independent_listing() {
+    let (listing, noise) = (Listing::new(), Noise::new(Basis::Improved, 0));
+    let mut random = random_numbers();
+    let mut seen = [false; 16];
+    let mut worst = 0.0f64;
+    for i in 0..10_000 {
+        let scale = [4.0, 300.0, 1e5, 1e9][i % 4];
+        let point: [f64; 3] = std::array::from_fn(|_| random() * scale);
+        let expected = listing.value(point, &mut seen);
+        assert_eq!(noise.value(point), expected, "at {point:?}");
+        // Single precision: against the same point, exactly representable.
+        let single = point.map(|coordinate| coordinate as f32);
+        let expected = listing.value(single.map(f64::from), &mut seen);
+        worst = worst.max((f64::from(noise.value(single)) - expected).abs());
+    }
+    assert!(worst < 2e-6, "{worst}");
+    assert_eq!(seen, [true; 16]);
+}
+
+#[test]
+fn gradient_noises_vanish_at_lattice_points() {
+    for basis in [Basis::Improved, Basis::Classic] {
+        let noise = Noise::new(basis, 0);
+        for i in -300..300 {
+            let point = [f64::from(i), f64::from(i * 7 % 31), f64::from(-i)];
+            assert_eq!(noise.value(point).to_bits(), 0, "{basis:?} at {point:?}");
+        }
+    }
+}
+
+#[test]
+fn lattice_noise_has_the_tables_values_at_lattice_points() {
+    let (listing, noise) = (Listing::new(), Noise::new(Basis::Lattice, 0));
+    for i in -300..300i64 {
+        let corner = [i, i * 7 % 31, -i];
+        let expected = f64::from(listing.hash(corner)) * (2.0 / 255.0) - 1.0;
+        assert_eq!(noise.value(corner.map(|coordinate| coordinate as f64)), expected);
+    }
+}
+
+#[test]
+fn two_dimensions_are_the_slice_at_zero() {
+    let mut random = random_numbers();
+    for &basis in Basis::ALL {
+        let noise = Noise::new(basis, 3);
+        for _ in 0..1000 {
+            let (x, y) = ((random() * 50.0) as f32, (random() * 50.0) as f32);
+            assert_eq!(noise.value([x, y]).to_bits(), noise.value([x, y, 0.0]).to_bits(), "{basis:?}");
+        }
+    }
+}
+
+#[test]
+fn gradients_equal_central_differences() {
+    let mut random = random_numbers();
+    let step = 1e-5;
+    for &basis in Basis::ALL {
+        for combine in Combine::ALL {
+            let sum = Sum::new(Noise::new(basis, 5), *combine, 3);
+            for _ in 0..500 {
+                let point: [f64; 3] = std::array::from_fn(|_| random() * 20.0);
+                let (value, gradient) = sum.value_and_gradient(point);
+                assert_eq!(value, sum.value(point));
+                for axis in 0..3 {
+                    let moved = |by: f64| {
+                        let mut moved = point;
+                        moved[axis] += by;
+                        sum.value(moved)
+                    };
+                    let (left, right) = (moved(-step), moved(step));
+                    // Within a step of a crease the difference says nothing.
+                    let bend = (left + right - 2.0 * value).abs() / step;
+                    let difference = (right - left) / (2.0 * step);
+                    assert!((difference - gradient[axis]).abs() < 1e-6 + bend, "{basis:?} {combine:?} {point:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn periods_repeat_to_the_bit() {
+    let mut random = random_numbers();
+    for &basis in Basis::ALL {
+        for period in [[1, 1, 1], [3, 5, 7], [256, 255, 257], [1000, 4, 0], [0, 6, 1 << 24]] {
+            let noise = Noise::new(basis, 0).with_period(period).unwrap();
+            let sum = Sum::new(noise.clone(), Combine::Absolute, 3);
+            let mut differ = false;
+            for _ in 0..300 {
+                // Multiples of 1/64, so that adding a period rounds nothing.
+                let point: [f32; 3] = std::array::from_fn(|_| (random() * 1000.0).floor() as f32 / 64.0);
+                for axis in 0..3 {
+                    let cells = if period[axis] == 0 { 256 } else { period[axis] };
+                    if cells > 1000 {
+                        continue;
+                    }
+                    let mut moved = point;
+                    moved[axis] += cells as f32;
+                    assert_eq!(noise.value(point).to_bits(), noise.value(moved).to_bits(), "{basis:?} {period:?}");
+                    assert_eq!(sum.value(point).to_bits(), sum.value(moved).to_bits(), "{basis:?} {period:?}");
+                    moved[axis] += 0.5;
+                    differ |= noise.value(point) != noise.value(moved);
+                }
+            }
+            // (With one cell for all, lattice noise is constant.)
+            assert!(differ || period == [1; 3]);
+        }
+    }
+}
+
+#[test]
+fn a_period_of_256_changes_nothing_and_longer_ones_are_refused() {
+    let noise = Noise::new(Basis::Improved, 0);
+    let periodic = noise.clone().with_period([256; 3]).unwrap();
+    assert_eq!(noise.value([-3.3, 700.2, 12.9]), periodic.value([-3.3, 700.2, 12.9]));
+    let error = noise.with_period([1, u32::MAX, 1]).unwrap_err();
+    assert_eq!(error.to_string(), "expected a period up to 16777216 along y, found 4294967295");
+}
+
+#[test]
+fn any_input_has_a_value() {
+    for &basis in Basis::ALL {
+        for period in [[0; 3], [7; 3]] {
+            let noise = Noise::new(basis, 0).with_period(period).unwrap();
+            for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+                assert!(noise.value([0.5, bad, 0.5]).is_nan());
+                assert!(noise.value([0.5, f64::from(bad), 0.5]).is_nan());
+            }
+            for far in [3e9f32, -3e9, 1e19, -1e19, f32::MAX, f32::MIN] {
+                assert!(noise.value([0.5, far, 0.25]).abs() <= 1.0, "{basis:?} at {far}");
+                assert!(noise.value([0.5, f64::from(far), 0.25]).abs() <= 1.0, "{basis:?} at {far}");
+            }
+        }
+    }
+}
+
+#[test]
+fn turbulence_is_the_printed_sum() {
+    let noise = Noise::new(Basis::Improved, 0);
+    let turbulence = Sum::new(noise.clone(), Combine::Absolute, 4);
+    let mut random = random_numbers();
+    for _ in 0..1000 {
+        let point: [f32; 3] = std::array::from_fn(|_| random() as f32 * 10.0);
+        let octave = |factor: f32| noise.value(point.map(|coordinate| coordinate * factor)).abs();
+        let expected = octave(1.0) + 0.5 * octave(2.0) + 0.25 * octave(4.0) + 0.125 * octave(8.0);
+        assert_eq!(turbulence.value(point), expected);
+    }
+}
+
+#[test]
+fn absolute_means_are_as_documented() {
+    let mut random = random_numbers();
+    for (basis, in_space, in_plane) in
+        [(Basis::Improved, 0.220, 0.204), (Basis::Classic, 0.148, 0.139), (Basis::Lattice, 0.303, 0.356)]
+    {
+        let (mut space, mut plane, mut signed) = (0.0, 0.0, 0.0);
+        const COUNT: usize = 200_000;
+        let noises: Vec<Noise> = (0..50).map(|seed| Noise::new(basis, seed)).collect();
+        for i in 0..COUNT {
+            let point: [f32; 3] = std::array::from_fn(|_| random() as f32 * 128.0);
+            let noise = &noises[i % noises.len()];
+            let value = f64::from(noise.value(point));
+            space += value.abs();
+            signed += value;
+            plane += f64::from(noise.value([point[0], point[1]]).abs());
+        }
+        let count = COUNT as f64;
+        assert!((space / count - in_space).abs() < 0.01, "{basis:?} in space: {}", space / count);
+        assert!((plane / count - in_plane).abs() < 0.01, "{basis:?} in the plane: {}", plane / count);
+        assert!((signed / count).abs() < 0.01, "{basis:?}: {}", signed / count);
+    }
+}
