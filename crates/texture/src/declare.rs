@@ -2,6 +2,8 @@
 //! and one sentence each. Parser, help texts, reference pages and language bindings walk these lists and keep none
 //! of their own.
 
+use std::fmt;
+
 /// What a declared thing is called, what it is, and which parameters it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Declaration {
@@ -69,4 +71,27 @@ pub enum Value {
     Choice(&'static str),
     /// The default of a parameter whose value follows from its surroundings; never written.
     Auto,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Kind::Int { min, max } => write!(formatter, "a whole number from {min} to {max}"),
+            Kind::Float { min, max } => write!(formatter, "a number from {min} to {max}"),
+            Kind::Color => formatter.write_str("a colour of three components from 0 to 1"),
+            Kind::Choice(words) => write!(formatter, "one of `{}`", words.join("`, `")),
+        }
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Value::Int(value) => write!(formatter, "{value}"),
+            Value::Float(value) => write!(formatter, "{value}"),
+            Value::Color([red, green, blue]) => write!(formatter, "{red} {green} {blue}"),
+            Value::Choice(word) => formatter.write_str(word),
+            Value::Auto => formatter.write_str("auto"),
+        }
+    }
 }

@@ -1,0 +1,32 @@
+//! `fire`: cloud-like yellow patches cut by sharp, branching red veins.
+
+use jaspe_noise::Real;
+
+use super::{Kind, parameters};
+use crate::args::Args;
+use crate::declare::Declaration;
+use crate::space::{Frequencies, Space};
+
+/// w = T(X). The veins are the zeros of the noise.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Fire;
+
+impl Kind for Fire {
+    const DECLARATION: Declaration = Declaration {
+        name: "fire",
+        summary: "Yellow patches cut by branching red veins.",
+        parameters: &parameters(5, [1.0, 1.0, 0.0], [1.0, 0.15, 0.0]),
+    };
+    const FIGURE_SPACE: Space = Space::Uv;
+    // The figure has 10 cells per unit of v, which are 10/π per unit of length on the unit sphere, and 2.5 along x.
+    const FREQUENCIES: Frequencies = Frequencies { local: 3.0, world: 3.0, uv: 10.0 };
+
+    fn build(_: &Args) -> Self {
+        Fire
+    }
+
+    #[inline(always)]
+    fn shape<R: Real>(&self, _: R, sum: R) -> R {
+        sum
+    }
+}

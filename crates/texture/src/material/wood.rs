@@ -1,0 +1,38 @@
+//! `wood`: irregular rings in two browns, each with a sharp edge on one side and a smooth ramp on the other.
+
+use jaspe_noise::Real;
+
+use super::{Kind, parameters};
+use crate::args::Args;
+use crate::declare::Declaration;
+use crate::space::{Frequencies, Space};
+
+/// w = frac(15 T(X)), which jumps from 1 to 0 at the edge of each ring.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Wood;
+
+impl Kind for Wood {
+    const DECLARATION: Declaration = Declaration {
+        name: "wood",
+        summary: "Closed rings in two browns; mirrors a tenth of the light.",
+        parameters: &parameters(5, [0.392156863, 0.196078431, 0.0], [0.784313726, 0.392156863, 0.0]),
+    };
+    const FIGURE_SPACE: Space = Space::Local;
+    // 0.3 · π is 0.94.
+    const FREQUENCIES: Frequencies = Frequencies { local: 0.3, world: 0.3, uv: 1.0 };
+    const REFLECTION: f32 = 0.1;
+
+    fn build(_: &Args) -> Self {
+        Wood
+    }
+
+    #[inline(always)]
+    fn shape<R: Real>(&self, _: R, sum: R) -> R {
+        let rings = R::constant(15.0) * sum;
+        rings - rings.floor()
+    }
+
+    fn coefficient_range(&self, _: [f32; 2]) -> [f32; 2] {
+        [0.0, 1.0]
+    }
+}

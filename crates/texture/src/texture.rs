@@ -1,0 +1,180 @@
+//! A texture ready to evaluate, and the colours that its coefficient mixes.
+
+use jaspe_noise::simd::{self, Kernel, Level};
+use jaspe_noise::{Noise, Real, Sum};
+
+use crate::args::{Args, BuildError};
+use crate::declare::{Declaration, Value};
+use crate::material::Material;
+use crate::space::{Frequencies, Space};
+
+/// A procedural material with its arguments. Immutable; cheap to clone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Texture {
+    material: Material,
+    sum: Sum,
+    initial: [f32; 3],
+    last: [f32; 3],
+    scale: f64,
+    written_space: Option<Space>,
+    space: Space,
+}
+
+/// Points that are worked on at a time; their coordinates in texture space lie on the stack.
+const BLOCK: usize = 256;
+
+impl Texture {
+    /// The declarations of all materials, in the order of the reference page.
+    pub const ALL: &[&Declaration] = Material::DECLARATIONS;
+
+    /// The material of this name with these arguments; the defaults stand for the parameters that are not among them.
+    ///
+    /// # Errors
+    /// When no material or parameter has the name, or a value is of the wrong kind or out of range.
+    pub fn build(name: &str, args: &[(&str, Value)]) -> Result<Texture, BuildError> {
+        let index = Self::ALL.iter().position(|declaration| declaration.name == name);
+        let index = index.ok_or_else(|| BuildError::UnknownTexture { name: name.to_owned() })?;
+        let args = Args::check(Self::ALL[index], args)?;
+        let noise = Noise::new(args.basis(), args.int("seed") as u64);
+        Ok(Texture {
+            material: Material::build(index, &args),
+            sum: Sum::new(noise, args.combine(), args.int("depth") as u32),
+            initial: args.color("diffuse_initial"),
+            last: args.color("diffuse_final"),
+            scale: args.float("scale"),
+            written_space: args.space(),
+            space: args.space().unwrap_or(Space::Local),
+        })
+    }
+
+    /// What this material declares.
+    pub fn declaration(&self) -> &'static Declaration {
+        self.material.declaration()
+    }
+
+    /// The space that points are given in: the parameter `space`, or else local.
+    pub fn space(&self) -> Space {
+        self.space
+    }
+
+    /// The space that the parameter `space` asked for, if it was given.
+    pub fn written_space(&self) -> Option<Space> {
+        self.written_space
+    }
+
+    /// The space in which the report's figures show this material.
+    pub fn figure_space(&self) -> Space {
+        self.material.figure_space()
+    }
+
+    /// The same texture as the report's figures have it: in [`Texture::figure_space`], unless `space` was given.
+    pub fn in_figure_space(mut self) -> Self {
+        self.space = self.written_space.unwrap_or(self.figure_space());
+        self
+    }
+
+    /// The part of the light that the material mirrors: 0.1 for wood, 0.2 for water, 0 for the others.
+    pub fn reflection(&self) -> f32 {
+        self.material.reflection()
+    }
+
+    /// The noise cells per unit of each space, before the parameter `scale`.
+    pub fn frequencies(&self) -> Frequencies {
+        self.material.frequencies()
+    }
+
+    /// The noise sum that the material shapes.
+    pub fn sum(&self) -> &Sum {
+        &self.sum
+    }
+
+    /// The least and the largest coefficient that the material can have.
+    pub fn coefficient_range(&self) -> [f32; 2] {
+        self.material.coefficient_range(&self.sum)
+    }
+
+    /// The coefficient w at a point of the texture's space (two coordinates for uv, three for the others).
+    #[inline(always)]
+    pub fn value<R: Real, const D: usize>(&self, point: [R; D]) -> R {
+        let factor = R::constant(self.factor());
+        let point = point.map(|coordinate| coordinate * factor);
+        self.material.shape(point[0], self.sum.value(point))
+    }
+
+    /// The coefficients at many points of the texture's space: one slice of coordinates per axis (two for uv, three for
+    /// the others), one slice for the coefficients. The same bits as [`Texture::value`] in single precision. Allocates
+    /// nothing.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn evaluate<const D: usize>(&self, points: [&[f32]; D], coefficients: &mut [f32]) {
+        self.evaluate_at(simd::level(), points, coefficients);
+    }
+
+    /// [`Texture::evaluate`] with the instructions of a level, at most those of the machine. For tests and measurements.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn evaluate_at<const D: usize>(&self, level: Level, points: [&[f32]; D], coefficients: &mut [f32]) {
+        for coordinates in points {
+            assert_eq!(coordinates.len(), coefficients.len(), "all slices have the same length");
+        }
+        let factor = self.factor() as f32;
+        let mut scaled = [[0.0; BLOCK]; D];
+        let mut sums = [0.0; BLOCK];
+        for (block, coefficients) in coefficients.chunks_mut(BLOCK).enumerate() {
+            let (start, count) = (block * BLOCK, coefficients.len());
+            for axis in 0..D {
+                let coordinates = &points[axis][start..start + count];
+                for (scaled, coordinate) in scaled[axis].iter_mut().zip(coordinates) {
+                    *scaled = coordinate * factor;
+                }
+            }
+            self.sum.fill_at(level, scaled.each_ref().map(|axis| &axis[..count]), &mut sums[..count]);
+            self.material.shape_all(level, [&scaled[0][..count], &sums[..count]], coefficients);
+        }
+    }
+
+    /// The colour that a coefficient mixes: display-encoded red, green, blue within 0 and 1. (Black for NaN.)
+    #[inline]
+    pub fn color(&self, coefficient: f32) -> [f32; 3] {
+        let mix = |i: usize| coefficient * self.initial[i] + (1.0 - coefficient) * self.last[i];
+        // NaN becomes 0.
+        std::array::from_fn(|i| if mix(i) > 0.0 { mix(i).min(1.0) } else { 0.0 })
+    }
+
+    /// The colours at many points of the texture's space. See [`Texture::evaluate`] and [`Texture::color`].
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn colors<const D: usize>(&self, points: [&[f32]; D], colors: &mut [[f32; 3]]) {
+        for coordinates in points {
+            assert_eq!(coordinates.len(), colors.len(), "all slices have the same length");
+        }
+        let level = simd::level();
+        let mut coefficients = [0.0; BLOCK];
+        for (block, colors) in colors.chunks_mut(BLOCK).enumerate() {
+            let (start, count) = (block * BLOCK, colors.len());
+            let points = points.map(|coordinates| &coordinates[start..start + count]);
+            self.evaluate_at(level, points, &mut coefficients[..count]);
+            for (color, &coefficient) in colors.iter_mut().zip(&coefficients) {
+                *color = self.color(coefficient);
+            }
+        }
+    }
+
+    /// What a coordinate is multiplied by, a number of single precision.
+    fn factor(&self) -> f64 {
+        f64::from((f64::from(self.frequencies().of(self.space)) / self.scale) as f32)
+    }
+}
+
+/// A material's shape as an evaluation over slices.
+pub(crate) struct Shape<'a, K>(pub(crate) &'a K);
+
+impl<K: crate::material::Kind> Kernel<2> for Shape<'_, K> {
+    #[inline(always)]
+    fn run<R: Real>(&self, [along, sum]: [R; 2]) -> R {
+        self.0.shape(along, sum)
+    }
+}

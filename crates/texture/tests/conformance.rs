@@ -1,0 +1,318 @@
+//! What every material promises, walked over the list of all.
+
+use jaspe_noise::simd::Level;
+use jaspe_texture::declare::{Kind, Value};
+use jaspe_texture::{BuildError, Space, Texture};
+
+fn defaults(name: &str) -> Texture {
+    Texture::build(name, &[]).unwrap()
+}
+
+/// Every material, with its defaults and with each other noise and sum.
+fn variants() -> Vec<(String, Texture)> {
+    let mut variants = Vec::new();
+    for declaration in Texture::ALL {
+        for noise in ["improved", "classic", "lattice"] {
+            for sum in ["absolute", "plain"] {
+                let args = [("noise", Value::Choice(noise)), ("sum", Value::Choice(sum))];
+                let texture = Texture::build(declaration.name, &args).unwrap();
+                variants.push((format!("{} {noise} {sum}", declaration.name), texture));
+            }
+        }
+    }
+    assert_eq!(variants.len(), 36);
+    variants
+}
+
+/// Numbers in [-1, 1), reproducible.
+fn random_numbers() -> impl FnMut() -> f32 {
+    let mut state = 88_172_645_463_325_252u64;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 40) as f32 / (1u64 << 23) as f32 - 1.0
+    }
+}
+
+/// Three columns of coordinates within ± `scale`.
+fn cube(count: usize, scale: f32) -> [Vec<f32>; 3] {
+    let mut random = random_numbers();
+    std::array::from_fn(|_| (0..count).map(|_| random() * scale).collect())
+}
+
+#[test]
+fn coefficients_are_finite_and_in_range_near_and_far() {
+    for (name, texture) in variants() {
+        let [low, high] = texture.coefficient_range();
+        for scale in [0.01, 1.0, 50.0, 1e4, 1e7] {
+            let [x, y, z] = cube(2000, scale);
+            let mut values = vec![f32::NAN; 2000];
+            texture.evaluate([&x, &y, &z], &mut values);
+            for value in values {
+                assert!((low..=high).contains(&value), "{name} within ±{scale}: {value} is not in {low}..{high}");
+            }
+        }
+    }
+}
+
+#[test]
+fn coefficients_vary() {
+    for (name, texture) in variants() {
+        let [x, y, z] = cube(2000, 3.0);
+        let mut values = vec![0.0; 2000];
+        texture.evaluate([&x, &y, &z], &mut values);
+        let least = values.iter().copied().fold(f32::MAX, f32::min);
+        let most = values.iter().copied().fold(f32::MIN, f32::max);
+        assert!(most - least > 0.3, "{name}: {least}..{most}");
+    }
+}
+
+#[test]
+fn coefficients_are_continuous_across_cells_and_at_negative_coordinates() {
+    for (name, texture) in variants() {
+        let frequency = f64::from(texture.frequencies().local);
+        for axis in 0..3 {
+            for cell in [-300, -5, -1, 0, 1, 255, 256] {
+                for part in [0.0, 0.5, 0.25] {
+                    // Just below and just above a face between cells of the first octaves.
+                    let value = |step: f64| {
+                        let mut point = [0.3, -0.6, 1.7];
+                        point[axis] = (f64::from(cell) + part + step) / frequency;
+                        texture.value(point)
+                    };
+                    let jump = (value(1e-9) - value(-1e-9)).abs();
+                    let jump = if name.starts_with("wood") { jump.min(1.0 - jump) } else { jump };
+                    assert!(jump < 1e-5, "{name}: jumps by {jump} at {cell} along {axis}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_level_and_length_gives_the_same_bits() {
+    let points = cube(700, 20.0);
+    for (name, texture) in variants() {
+        let expected: Vec<f32> = (0..700).map(|i| texture.value([points[0][i], points[1][i], points[2][i]])).collect();
+        let flat: Vec<f32> = (0..700).map(|i| texture.value([points[0][i], points[1][i]])).collect();
+        for level in Level::ALL {
+            for (start, count) in [(0, 700), (0, 1), (3, 17), (5, 64), (100, 255), (9, 256), (200, 257), (8, 0)] {
+                let at = start..start + count;
+                let mut values = vec![f32::MAX; count];
+                let [x, y, z] = points.each_ref().map(|axis| &axis[at.clone()]);
+                texture.evaluate_at(level, [x, y, z], &mut values);
+                assert_eq!(values, expected[at.clone()], "{name} at {level:?}, {count} points");
+                texture.evaluate_at(level, [x, y], &mut values);
+                assert_eq!(values, flat[at], "{name} at {level:?}, {count} points of the plane");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_shapes_are_those_of_the_figures() {
+    let point = [0.31f32, -0.52, 0.77];
+    for declaration in Texture::ALL {
+        for (sum_name, plain) in [("absolute", false), ("plain", true)] {
+            let texture = Texture::build(declaration.name, &[("sum", Value::Choice(sum_name))]).unwrap();
+            let scaled = point.map(|coordinate| coordinate * texture.frequencies().local);
+            let sum = f64::from(texture.sum().value(scaled));
+            let along = f64::from(scaled[0]) + sum;
+            let expected = match (declaration.name, plain) {
+                ("marble", false) => along.cos(),
+                ("marble", true) => along.sin(),
+                ("wood", _) => (15.0 * sum).rem_euclid(1.0),
+                _ => sum,
+            };
+            let found = f64::from(texture.value(point));
+            assert!((found - expected).abs() < 2e-6, "{} {sum_name}: {found}, {expected}", declaration.name);
+        }
+    }
+}
+
+/// The distributions over a sphere that the reference description of the original system states: material, octaves, mean,
+/// standard deviation, and how much the mean moves from table to table.
+const DISTRIBUTIONS: [(&str, i64, f64, f64, f64); 10] = [
+    ("fire", 4, 0.386, 0.173, 0.016),
+    ("fire", 5, 0.399, 0.173, 0.016),
+    ("fire", 9, 0.411, 0.173, 0.016),
+    ("water", 4, 0.386, 0.173, 0.016),
+    ("water", 5, 0.399, 0.173, 0.016),
+    ("stone", 4, 0.412, 0.180, 0.005),
+    ("stone", 9, 0.439, 0.181, 0.005),
+    ("organic", 9, 0.439, 0.181, 0.020),
+    ("marble", 5, -0.049, 0.715, 0.006),
+    ("wood", 5, 0.500, 0.289, 0.004),
+];
+
+#[test]
+fn distributions_over_a_sphere_are_those_of_the_reference() {
+    const COUNT: usize = 4000;
+    let mut random = random_numbers();
+    let mut directions: [Vec<f32>; 3] = Default::default();
+    while directions[0].len() < COUNT {
+        let v = [random(), random(), random()];
+        let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+        if (0.01..=1.0).contains(&length) {
+            (0..3).for_each(|axis| directions[axis].push(v[axis] / length));
+        }
+    }
+    for (name, depth, mean, deviation, moves) in DISTRIBUTIONS {
+        let (mut sum, mut squares) = (0.0, 0.0);
+        const SEEDS: i64 = 30;
+        for seed in 1..=SEEDS {
+            let args = [("depth", Value::Int(depth)), ("seed", Value::Int(seed))];
+            let texture = Texture::build(name, &args).unwrap().in_figure_space();
+            let mut values = vec![0.0; COUNT];
+            match texture.space() {
+                Space::Uv => {
+                    // The original's map of a sphere: u = (x + 1) / 4, v = acos(y) / π.
+                    let u: Vec<f32> = directions[0].iter().map(|x| (x + 1.0) / 4.0).collect();
+                    let v: Vec<f32> = directions[1].iter().map(|y| y.acos() / std::f32::consts::PI).collect();
+                    texture.evaluate([&u, &v], &mut values);
+                }
+                Space::Local => texture.evaluate(directions.each_ref().map(Vec::as_slice), &mut values),
+                Space::World => {
+                    // Organic's figures: a sphere of the radius 1.5 somewhere.
+                    let offset = [1.3 * seed as f32, 0.7, -2.1];
+                    let points: [Vec<f32>; 3] =
+                        std::array::from_fn(|i| directions[i].iter().map(|c| 1.5 * c + offset[i]).collect());
+                    texture.evaluate(points.each_ref().map(Vec::as_slice), &mut values);
+                }
+            }
+            sum += values.iter().map(|&v| f64::from(v)).sum::<f64>();
+            squares += values.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>();
+        }
+        let count = COUNT as f64 * SEEDS as f64;
+        let found = sum / count;
+        let spread = (squares / count - found * found).sqrt();
+        assert!((found - mean).abs() < 3.0 * moves, "{name} {depth}: mean {found}, expected {mean}");
+        assert!((spread - deviation).abs() < 0.02, "{name} {depth}: deviation {spread}, expected {deviation}");
+    }
+}
+
+#[test]
+fn colors_mix_initial_and_final_and_are_clamped() {
+    let texture = defaults("marble");
+    assert_eq!(texture.color(1.0), [0.466_667, 0.34, 0.066_666]);
+    assert_eq!(texture.color(0.0), [0.913_725_5, 0.705_882_4, 0.633_333_3]);
+    let beyond = texture.color(-1.0);
+    assert_eq!((beyond[0], beyond[1], beyond[2]), (1.0, 1.0, 1.0));
+    assert_eq!(texture.color(100.0), [0.0; 3]);
+    assert_eq!(texture.color(f32::NAN), [0.0; 3]);
+}
+
+#[test]
+fn colors_follow_the_coefficients() {
+    for declaration in Texture::ALL {
+        let texture = defaults(declaration.name);
+        let [x, y, z] = cube(600, 2.0);
+        let (mut coefficients, mut colors) = (vec![0.0; 600], vec![[0.0; 3]; 600]);
+        texture.evaluate([&x, &y, &z], &mut coefficients);
+        texture.colors([&x, &y, &z], &mut colors);
+        let expected: Vec<[f32; 3]> = coefficients.iter().map(|&w| texture.color(w)).collect();
+        assert_eq!(colors, expected);
+    }
+}
+
+#[test]
+fn scale_and_space_change_the_size() {
+    let point = [0.4f32, 0.8, -1.2];
+    for declaration in Texture::ALL {
+        let plain = defaults(declaration.name);
+        let twice = Texture::build(declaration.name, &[("scale", Value::Float(2.0))]).unwrap();
+        assert_eq!(twice.value(point.map(|c| 2.0 * c)), plain.value(point), "{}", declaration.name);
+        for &space in Space::ALL {
+            let there = Texture::build(declaration.name, &[("space", Value::Choice(space.name()))]).unwrap();
+            assert_eq!((there.space(), there.written_space()), (space, Some(space)));
+            assert_eq!(there.clone().in_figure_space().space(), space);
+            let ratio = there.frequencies().of(space) / there.frequencies().local;
+            let close = there.value(point.map(|c| f64::from(c / ratio))) - plain.value(point.map(f64::from));
+            assert!(close.abs() < 1e-3 || declaration.name == "wood", "{} in {space:?}", declaration.name);
+        }
+        assert_eq!(plain.space(), Space::Local);
+        assert_eq!(plain.clone().in_figure_space().space(), plain.figure_space());
+    }
+}
+
+#[test]
+fn seeds_give_other_pieces_and_the_same_seed_the_same() {
+    for declaration in Texture::ALL {
+        let of = |seed| Texture::build(declaration.name, &[("seed", Value::Int(seed))]).unwrap();
+        let point = [0.137f32, 0.521, 0.733];
+        assert_ne!(of(1).value(point), of(2).value(point));
+        assert_eq!(of(7).value(point), of(7).value(point));
+    }
+}
+
+#[test]
+fn declarations_are_complete_and_their_defaults_are_within_their_ranges() {
+    let names: Vec<&str> = Texture::ALL.iter().map(|declaration| declaration.name).collect();
+    assert_eq!(names, ["fire", "water", "organic", "wood", "marble", "stone"]);
+    for declaration in Texture::ALL {
+        assert!(declaration.summary.ends_with('.'));
+        for parameter in declaration.parameters {
+            assert!(parameter.summary.ends_with('.'), "{}", parameter.name);
+            if parameter.default == Value::Auto {
+                assert_eq!(parameter.name, "space");
+            } else {
+                assert_eq!(parameter.check(parameter.default), Ok(parameter.default));
+                assert_eq!(parameter.parse(&parameter.default.to_string()), Ok(parameter.default));
+            }
+            if let Kind::Choice(words) = parameter.kind {
+                for word in words {
+                    let texture = Texture::build(declaration.name, &[(parameter.name, Value::Choice(word))]).unwrap();
+                    let written = match parameter.name {
+                        "noise" => texture.sum().noise().basis().name(),
+                        "sum" => texture.sum().combine().name(),
+                        _ => texture.space().name(),
+                    };
+                    assert_eq!(written, *word);
+                }
+            }
+        }
+    }
+    assert_eq!((defaults("wood").reflection(), defaults("water").reflection()), (0.1, 0.2));
+    assert_eq!(defaults("stone").reflection(), 0.0);
+}
+
+#[test]
+fn wrong_arguments_are_told() {
+    let message = |name: &str, args: &[(&str, Value)]| Texture::build(name, args).unwrap_err().to_string();
+    assert_eq!(message("jade", &[]), "unknown texture `jade`");
+    assert_eq!(message("wood", &[("dept", Value::Int(3))]), "`wood` has no parameter `dept`");
+    assert_eq!(message("wood", &[("depth", Value::Int(99))]), "`depth` takes a whole number from 0 to 32, found 99");
+    assert_eq!(
+        message("wood", &[("scale", Value::Float(f64::NAN))]),
+        "`scale` takes a number from 0.000001 to 1000000, found NaN"
+    );
+    assert_eq!(
+        message("wood", &[("diffuse_initial", Value::Color([0.0, 2.0, 0.0]))]),
+        "`diffuse_initial` takes a colour of three components from 0 to 1, found 0 2 0"
+    );
+    assert_eq!(
+        message("wood", &[("space", Value::Choice("moon"))]),
+        "`space` takes one of `local`, `world`, `uv`, found moon"
+    );
+    assert_eq!(
+        message("wood", &[("seed", Value::Auto)]),
+        "`seed` takes a whole number from 0 to 9223372036854775807, found auto"
+    );
+}
+
+#[test]
+fn text_is_read_as_the_parameter_takes_it() {
+    let declaration = Texture::ALL[0];
+    let parse = |name: &str, text: &str| declaration.parameter(name).unwrap().parse(text);
+    assert_eq!(parse("depth", "7"), Ok(Value::Int(7)));
+    assert_eq!(parse("scale", "0.5"), Ok(Value::Float(0.5)));
+    assert_eq!(parse("diffuse_final", "1, 0.5 0"), Ok(Value::Color([1.0, 0.5, 0.0])));
+    assert_eq!(parse("noise", "classic"), Ok(Value::Choice("classic")));
+    for (name, text) in
+        [("depth", "7.5"), ("depth", "-1"), ("scale", "inf"), ("diffuse_final", "1 1"), ("noise", "pink")]
+    {
+        let error = parse(name, text).unwrap_err();
+        assert!(matches!(&error, BuildError::Refused { found, .. } if *found == format!("`{text}`")), "{error}");
+    }
+}
