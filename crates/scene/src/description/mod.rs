@@ -3,6 +3,7 @@
 //! Resolving names, baking transforms and filling in defaults is the work of the renderer's `compile`.
 
 mod camera;
+mod cie;
 mod color;
 mod image;
 mod light;
@@ -11,7 +12,7 @@ mod shader;
 mod transform;
 
 pub use camera::{Camera, Lens, View};
-pub use color::{Color, ColorSpec};
+pub use color::{Color, ColorSpec, srgb_decode, srgb_encode};
 pub use image::{Filter, Image};
 pub use light::{Light, LightKind};
 pub use object::{Geometry, Instance, Mesh, Object, Plane, VertexData};
