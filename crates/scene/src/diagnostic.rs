@@ -114,6 +114,11 @@ impl Diagnostics {
         other.list.into_iter().for_each(|diagnostic| self.push(diagnostic));
     }
 
+    /// Orders them by place: file after file, each from its start; those without a place come first.
+    pub(crate) fn sort(&mut self) {
+        self.list.sort_by_key(|diagnostic| diagnostic.span.map(|span| (span.file, span.start)));
+    }
+
     /// Whether any of them is an error.
     pub fn has_errors(&self) -> bool {
         self.list.iter().any(|diagnostic| diagnostic.severity == Severity::Error)

@@ -9,8 +9,13 @@
 
 pub mod description;
 mod diagnostic;
+mod lexer;
+mod number;
+mod parser;
 mod source;
+mod suggest;
 
 pub use description::{Dialect, Scene};
 pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
+pub use parser::{parse, read, set};
 pub use source::{DiskLoader, Loader, MemoryLoader, Position, Source, Sources, Span, Spanned};

@@ -1,0 +1,377 @@
+//! Reads the numbers of triangle meshes.
+//!
+//! Lists are read as far as the numbers go and compared with what was announced afterwards: a wrong count is one
+//! message instead of hundreds, and a count of two thousand million reserves no more than the file can hold.
+
+use super::block::{Key, Outcome, Required};
+use super::loose::Loose;
+use super::object::Draft;
+use super::{Context, Failed, Parsed, Parser};
+use crate::description::{Geometry, Mesh, VertexData};
+use crate::diagnostic::Diagnostic;
+use crate::lexer::{Lexer, Token};
+use crate::number;
+use crate::source::Span;
+
+/// What `normals` or `uvs` say.
+#[derive(Debug, Default)]
+enum Attribute<const N: usize> {
+    #[default]
+    Absent,
+    None,
+    Vertex(List<[f32; N]>),
+    FaceVarying(List<[f32; N]>),
+}
+
+/// Numbers and where they were written.
+#[derive(Debug)]
+struct List<T> {
+    values: Vec<T>,
+    /// The cursor before the first number.
+    start: Lexer,
+    /// The keyword.
+    key: Span,
+}
+
+/// The lists of a mesh as far as they were written.
+#[derive(Debug, Default)]
+pub(super) struct MeshDraft {
+    points: Option<List<[f32; 3]>>,
+    triangles: Option<List<[u32; 3]>>,
+    normals: Attribute<3>,
+    uvs: Attribute<2>,
+    face_shaders: Option<List<u32>>,
+}
+
+/// The keywords of `generic-mesh`.
+pub(super) const KEYS: &[Key<Draft>] = &[
+    Key::new("points", "points 3 0 0 0 1 0 0 0 1 0", |p, d, key| {
+        let count = p.count()?;
+        let list = p.list(key, count, number::float::<f32>)?;
+        p.check_count(&list, count, 3)?;
+        d.mesh.points = Some(list);
+        Ok(())
+    }),
+    Key::new("triangles", "triangles 1 0 1 2", |p, d, key| {
+        let count = p.count()?;
+        let list = p.list(key, count, number::index)?;
+        p.check_count(&list, count, 3)?;
+        d.mesh.triangles = Some(list);
+        Ok(())
+    }),
+    Key::new("normals", "normals none", |p, d, key| {
+        d.mesh.normals = p.attribute(key)?;
+        Ok(())
+    }),
+    Key::new("uvs", "uvs none", |p, d, key| {
+        d.mesh.uvs = p.attribute(key)?;
+        Ok(())
+    }),
+    Key::new("face_shaders", "face_shaders 0 0 1", |p, d, key| {
+        let List { values, start, key } = p.list::<u32, 1>(key, 0, number::index)?;
+        d.mesh.face_shaders = Some(List { values: values.into_iter().flatten().collect(), start, key });
+        Ok(())
+    }),
+];
+
+/// What the numbers of a list are read with, and what they must be.
+trait Number: Copy + Default {
+    const WHAT: &'static str;
+    fn is_usable(self) -> bool;
+}
+
+impl Number for f32 {
+    const WHAT: &'static str = "finite numbers";
+
+    fn is_usable(self) -> bool {
+        self.is_finite()
+    }
+}
+
+impl Number for u32 {
+    const WHAT: &'static str = "indices from 0";
+
+    fn is_usable(self) -> bool {
+        true
+    }
+}
+
+impl Parser<'_> {
+    /// The announced length of a list.
+    fn count(&mut self) -> Parsed<usize> {
+        let before = self.peek();
+        match usize::try_from(self.int()?) {
+            Ok(count) => Ok(count),
+            Err(_) => Err(self.expected("the length of the list", before)),
+        }
+    }
+
+    /// As many numbers as there are. A number short of a multiple of `N` is an error, except that `expected` says
+    /// more than the file holds anyway.
+    fn list<T: Number, const N: usize>(
+        &mut self,
+        key: Span,
+        expected: usize,
+        read: fn(&[u8]) -> Option<T>,
+    ) -> Parsed<List<[T; N]>> {
+        let bytes = self.bytes.clone();
+        let start = self.lexer;
+        // Each number takes two bytes at least.
+        let mut values: Vec<[T; N]> = Vec::with_capacity(expected.min(start.remaining(&bytes) / (2 * N) + 1));
+        let mut lexer = start;
+        let mut unusable = 0_usize;
+        let (end, left) = 'tuples: loop {
+            let mut tuple = [T::default(); N];
+            for (i, slot) in tuple.iter_mut().enumerate() {
+                let before = lexer;
+                match lexer.next(&bytes).and_then(|token| read(token.bytes(&bytes))) {
+                    Some(value) => *slot = value,
+                    None => break 'tuples (before, i),
+                }
+                unusable += usize::from(!slot.is_usable());
+            }
+            values.push(tuple);
+        };
+        self.lexer = end;
+        values.shrink_to_fit();
+        self.check_list_end::<T>()?;
+        if unusable > 0 {
+            return Err(self.unusable(start, unusable));
+        }
+        let list = List { values, start, key };
+        if left > 0 && expected == 0 {
+            let found = self.peek();
+            return Err(self.expected(&format!("a multiple of {N} numbers"), found));
+        }
+        if left > 0 {
+            return Err(self.wrong_count(&list, expected * N, list.values.len() * N + left));
+        }
+        Ok(list)
+    }
+
+    /// A list ends at a keyword or a brace; anything that looks like a number is one gone wrong.
+    fn check_list_end<T: Number>(&mut self) -> Parsed<()> {
+        let end = self.peek();
+        let bytes = end.map(|token| token.bytes(&self.bytes)).unwrap_or_default();
+        let numeric = matches!(bytes, [b'0'..=b'9' | b'+' | b'.', ..] | [b'-', b'0'..=b'9' | b'.', ..]);
+        if numeric || self.holds_glued(end) {
+            return Err(self.expected(T::WHAT, end));
+        }
+        Ok(())
+    }
+
+    fn holds_glued(&self, token: Option<Token>) -> bool {
+        token.is_some_and(|token| self.holds_glued_brace(token))
+    }
+
+    /// Reports the first of `count` numbers from `start` that are not finite.
+    fn unusable(&mut self, start: Lexer, count: usize) -> Failed {
+        let mut lexer = start;
+        let bytes = self.bytes.clone();
+        let infinite = |token: &Token| number::float::<f32>(token.bytes(&bytes)).is_some_and(|v| !v.is_finite());
+        let first = std::iter::from_fn(|| lexer.next(&bytes)).find(infinite);
+        let shown = first.map(|token| self.shown(token)).unwrap_or_default();
+        let more = if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
+        let message = format!("`{}` expects finite numbers, found `{shown}`{more}", self.context.name);
+        self.failed_at = self.lexer.position() as u32;
+        let span = first.map(|token| self.span(token));
+        self.diagnostics.push(Diagnostic::error(span, message));
+        Failed
+    }
+
+    /// Compares a list with the number of entries of `N` numbers that was announced.
+    fn check_count<T: Number, const N: usize>(&mut self, list: &List<[T; N]>, count: usize, size: usize) -> Parsed<()> {
+        match list.values.len() == count {
+            true => Ok(()),
+            false => Err(self.wrong_count(list, count.saturating_mul(size), list.values.len() * size)),
+        }
+    }
+
+    fn wrong_count<T>(&mut self, list: &List<T>, expected: usize, found: usize) -> Failed {
+        let name = self.context.name;
+        let message = format!("`{name}` needs {expected} numbers, found {found}");
+        let mut diagnostic = Diagnostic::error(list.key, message);
+        if found > expected {
+            let surplus = self.nth_number(list.start, expected);
+            diagnostic = match surplus {
+                Some(span) => diagnostic.label(span, "one too many"),
+                None => diagnostic,
+            };
+        } else if let Some(end) = self.peek() {
+            diagnostic = diagnostic.label(self.span(end), "the list ends here");
+        }
+        self.failed_at = self.lexer.position() as u32;
+        self.diagnostics.push(diagnostic);
+        Failed
+    }
+
+    /// Where the number of that index stands in a list; other words in between are passed.
+    fn nth_number(&self, mut lexer: Lexer, index: usize) -> Option<Span> {
+        let is_number = |token: &Token| number::float::<f32>(token.bytes(&self.bytes)).is_some();
+        let token = std::iter::from_fn(|| lexer.next(&self.bytes)).filter(is_number).nth(index)?;
+        Some(self.span(token))
+    }
+
+    /// The value of `normals` or `uvs`.
+    fn attribute<const N: usize>(&mut self, key: Span) -> Parsed<Attribute<N>> {
+        let choices = [("none", 0), ("vertex", 1), ("facevarying", 2)];
+        Ok(match self.choice("a kind of vertex data", &choices)?.value {
+            0 => Attribute::None,
+            1 => Attribute::Vertex(self.list(key, 0, number::float::<f32>)?),
+            _ => Attribute::FaceVarying(self.list(key, 0, number::float::<f32>)?),
+        })
+    }
+}
+
+/// The numbers of the old meshes: `V T`, then V times `v x y z nx ny nz u v`, then T times `t a b c`.
+pub(super) fn legacy(parser: &mut Parser<'_>, draft: &mut Draft, key: Span) -> Parsed<()> {
+    parser.context = Context { name: "mesh", example: "" };
+    let (vertex_count, triangle_count) = (parser.count()?, parser.count()?);
+    let start = parser.lexer;
+    let fits = |count: usize, size: usize| count.min(start.remaining(&parser.bytes) / size);
+    let mut points = Vec::with_capacity(fits(vertex_count, 18));
+    let mut normals = Vec::with_capacity(fits(vertex_count, 18));
+    let mut uvs = Vec::with_capacity(fits(vertex_count, 18));
+    let mut triangles = Vec::with_capacity(fits(triangle_count, 8));
+    parser.context = Context { name: "v", example: "v 0 0 0 0 0 1 0 0" };
+    while parser.take("v").is_some() {
+        let [x, y, z, nx, ny, nz, u, v] = parser.numbers()?;
+        points.push([x, y, z]);
+        normals.push([nx, ny, nz]);
+        uvs.push([u, v]);
+    }
+    parser.context = Context { name: "t", example: "t 0 1 2" };
+    let triangles_start = parser.lexer;
+    while parser.take("t").is_some() {
+        let mut triangle = [0; 3];
+        for index in &mut triangle {
+            let found = parser.next();
+            match found.and_then(|token| number::index(token.bytes(&parser.bytes))) {
+                Some(value) => *index = value,
+                None => return Err(parser.expected("three indices from 0", found)),
+            }
+        }
+        triangles.push(triangle);
+    }
+    for (what, expected, found) in [("v", vertex_count, points.len()), ("t", triangle_count, triangles.len())] {
+        if expected != found {
+            let message = format!("the mesh announces {expected} lines of `{what}`, found {found}");
+            parser.failed_at = parser.lexer.position() as u32;
+            parser.diagnostics.push(Diagnostic::error(key, message));
+            return Err(Failed);
+        }
+    }
+    draft.mesh.points = Some(List { values: points, start, key });
+    draft.mesh.triangles = Some(List { values: triangles, start: triangles_start, key });
+    draft.mesh.normals = Attribute::Vertex(List { values: normals, start, key });
+    draft.mesh.uvs = Attribute::Vertex(List { values: uvs, start, key });
+    Ok(())
+}
+
+/// The mesh of a `generic-mesh`.
+pub(super) fn generic(parser: &mut Parser<'_>, draft: &mut Draft, outcome: &Outcome, head: Span) -> Option<Geometry> {
+    let required: &[Required] = &[(&["points"], "points 3 0 0 0 1 0 0 0 1 0"), (&["triangles"], "triangles 1 0 1 2")];
+    parser.require("generic-mesh", outcome, head, required);
+    for (key, loose) in [("normals", Loose::MeshWithoutNormals), ("uvs", Loose::MeshWithoutUvs)] {
+        if !outcome.has(key) {
+            parser.loose(loose, head);
+        }
+    }
+    build(parser, draft)
+}
+
+/// The mesh of a `mesh`.
+pub(super) fn smooth(parser: &mut Parser<'_>, draft: &mut Draft, outcome: &Outcome, head: Span) -> Option<Geometry> {
+    if draft.mesh.points.is_none() && !outcome.failed {
+        let message = "the mesh lacks its numbers";
+        let hint = "write `V T`, V lines `v x y z nx ny nz u v` and T lines `t a b c`";
+        parser.diagnostics.push(Diagnostic::error(head, message).hint(hint));
+    }
+    build(parser, draft)
+}
+
+/// The mesh of a `flat-mesh`: its normals are written and not used.
+pub(super) fn flat(parser: &mut Parser<'_>, draft: &mut Draft, outcome: &Outcome, head: Span) -> Option<Geometry> {
+    draft.mesh.normals = Attribute::None;
+    smooth(parser, draft, outcome, head)
+}
+
+/// Checks the lists against each other. An inconsistent mesh is reported and not kept.
+fn build(parser: &mut Parser<'_>, draft: &mut Draft) -> Option<Geometry> {
+    let MeshDraft { points, triangles, normals, uvs, face_shaders } = std::mem::take(&mut draft.mesh);
+    let (points, triangles) = (points?, triangles?);
+    let counts = [points.values.len(), triangles.values.len()];
+    let in_range = parser.check_indices(&triangles, counts[0]);
+    let normals = parser.vertex_data("normals", normals, counts);
+    let uvs = parser.vertex_data("uvs", uvs, counts);
+    let face_shaders = match face_shaders {
+        Some(list) => Some(parser.face_shaders(list, counts[1], draft)?),
+        None => None,
+    };
+    if !in_range {
+        return None;
+    }
+    let (points, triangles) = (points.values, triangles.values);
+    Some(Geometry::Mesh(Mesh { points, triangles, normals: normals?, uvs: uvs?, face_shaders }))
+}
+
+impl Parser<'_> {
+    /// Reports indices that no point answers to: the first one, and how many more there are.
+    fn check_indices(&mut self, triangles: &List<[u32; 3]>, points: usize) -> bool {
+        let is_bad = |index: &u32| *index as usize >= points;
+        let indices = || triangles.values.iter().flatten();
+        let Some(at) = indices().position(is_bad) else { return true };
+        let (first, count) = (triangles.values[at / 3][at % 3], indices().filter(|index| is_bad(index)).count());
+        let more = if count > 1 { format!(" (and {} more indices)", count - 1) } else { String::new() };
+        let message = format!("there is no point {first}: the mesh has {points} points{more}");
+        let span = self.nth_number(triangles.start, at).unwrap_or(triangles.key);
+        let hint = match points {
+            0 => "a mesh without points has no triangles".to_owned(),
+            _ => format!("points count from 0: the last one is {}", points - 1),
+        };
+        self.diagnostics.push(Diagnostic::error(span, message).hint(hint));
+        false
+    }
+
+    fn vertex_data<const N: usize>(
+        &mut self,
+        what: &'static str,
+        attribute: Attribute<N>,
+        [points, triangles]: [usize; 2],
+    ) -> Option<VertexData<[f32; N]>> {
+        let (list, kind, needed) = match attribute {
+            Attribute::Absent | Attribute::None => return Some(VertexData::None),
+            Attribute::Vertex(list) => (list, "vertex", points),
+            Attribute::FaceVarying(list) => (list, "facevarying", 3 * triangles),
+        };
+        if list.values.len() != needed {
+            let (needed, found) = (needed * N, list.values.len() * N);
+            let message = format!("`{what} {kind}` needs {needed} numbers in this mesh, found {found}");
+            let hint = match kind {
+                "vertex" => format!("`vertex` means {N} numbers for each of the {points} points"),
+                _ => format!("`facevarying` means {N} numbers for each corner of the {triangles} triangles"),
+            };
+            self.diagnostics.push(Diagnostic::error(list.key, message).hint(hint));
+            return None;
+        }
+        Some(if kind == "vertex" { VertexData::Vertex(list.values) } else { VertexData::FaceVarying(list.values) })
+    }
+
+    fn face_shaders(&mut self, list: List<u32>, triangles: usize, draft: &Draft) -> Option<Vec<u32>> {
+        if list.values.len() != triangles {
+            let message = format!("`face_shaders` needs {triangles} numbers, found {}", list.values.len());
+            let hint = "it takes one number for each triangle";
+            self.diagnostics.push(Diagnostic::error(list.key, message).hint(hint));
+            return None;
+        }
+        let shaders = draft.shaders.len();
+        let at = list.values.iter().position(|index| *index as usize >= shaders);
+        if let (Some(at), true) = (at, draft.is_visible() && shaders > 0) {
+            let message = format!("there is no shader {}: the object has {shaders}", list.values[at]);
+            let span = self.nth_number(list.start, at).unwrap_or(list.key);
+            self.diagnostics.push(Diagnostic::error(span, message).hint("shaders of an object count from 0"));
+            return None;
+        }
+        Some(list.values)
+    }
+}

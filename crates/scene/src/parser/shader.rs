@@ -1,0 +1,348 @@
+//! Reads the `shader` block: the plain shaders from the table here, the procedural ones from their declarations.
+
+use jaspe_texture::declare::{Declaration, Kind};
+
+use super::block::{Grammar, Key, Required};
+use super::loose::Loose;
+use super::materials::procedural_declarations;
+use super::value::{shorten, unknown_word};
+use super::{Context, Failed, Parsed, Parser};
+use crate::description::{Color, ColorOrTexture, Name, Setting, SettingValue, Shader, ShaderKind};
+use crate::diagnostic::Diagnostic;
+use crate::lexer::Token;
+use crate::source::{Span, Spanned};
+
+/// The keywords of a shader as far as they were written.
+#[derive(Debug, Default)]
+pub(super) struct Draft {
+    pub name: Option<Name>,
+    pub declaration: Option<&'static Declaration>,
+    pub settings: Vec<Setting>,
+    pub color: Option<Color>,
+    pub diffuse: Option<ColorOrTexture>,
+    pub specular: Option<(Color, f32)>,
+    pub samples: Option<u32>,
+    pub eta: Option<f32>,
+    pub absorption_distance: Option<f32>,
+    pub absorption_color: Option<Color>,
+}
+
+/// A shader with a fixed set of keywords.
+pub(super) struct ShaderType {
+    pub name: &'static str,
+    pub keys: &'static [Key<Draft>],
+    required: &'static [Required],
+    /// What the draft means; the span stands for values that were not written.
+    pub build: fn(Draft, Span) -> Option<ShaderKind>,
+}
+
+const NAME: Key<Draft> = Key::new("name", "name red", |p, d, _| {
+    d.name = Some(p.word("a name")?);
+    Ok(())
+});
+
+const TYPE: Key<Draft> = Key::new("type", "type diffuse", |p, d, _| {
+    let kind = p.word("a shader type")?;
+    // `type constant COLOR` is as good as `type constant color COLOR`.
+    if kind.value == "constant" && p.color_follows() {
+        d.color = Some(p.color()?);
+    }
+    Ok(())
+});
+
+const COLOR: Key<Draft> = Key::new("color", "color { \"sRGB nonlinear\" 1 0.5 0 }", color);
+const REFL: Key<Draft> = Key::new("refl", "refl { \"sRGB nonlinear\" 1 1 1 }", color);
+
+fn color(parser: &mut Parser<'_>, draft: &mut Draft, _: Span) -> Parsed<()> {
+    draft.color = Some(parser.color()?);
+    Ok(())
+}
+
+const DIFF: Key<Draft> = Key::new("diff", "diff { \"sRGB nonlinear\" 1 0.5 0 }", |p, d, _| {
+    d.diffuse = Some(ColorOrTexture::Color(p.color()?));
+    Ok(())
+});
+
+const TEXTURE: Key<Draft> = Key::new("texture", "texture \"wall.png\"", |p, d, _| {
+    d.diffuse = Some(ColorOrTexture::Texture(p.word("a file name")?));
+    Ok(())
+});
+
+const SPEC: Key<Draft> = Key::new("spec", "spec { \"sRGB nonlinear\" 1 1 1 } 50", |p, d, _| {
+    d.specular = Some((p.color()?, p.number()?));
+    Ok(())
+});
+
+const SAMPLES: Key<Draft> = Key::new("samples", "samples 4", |p, d, _| {
+    d.samples = Some(u32::try_from(p.int()?.max(0)).unwrap_or(u32::MAX));
+    Ok(())
+});
+
+const ETA: Key<Draft> = Key::new("eta", "eta 1.5", |p, d, _| {
+    d.eta = Some(p.positive("`eta`")?);
+    Ok(())
+});
+
+fn absorption_distance(parser: &mut Parser<'_>, draft: &mut Draft, _: Span) -> Parsed<()> {
+    draft.absorption_distance = Some(parser.number()?);
+    Ok(())
+}
+
+fn absorption_color(parser: &mut Parser<'_>, draft: &mut Draft, _: Span) -> Parsed<()> {
+    draft.absorption_color = Some(parser.color()?);
+    if parser.number_follows() {
+        let number = parser.spanned(Parser::number::<f32>)?;
+        parser.loose(Loose::NumberAfterAbsorption, number.span);
+    }
+    Ok(())
+}
+
+const NAME_REQUIRED: Required = (&["name"], "name NAME");
+const DIFFUSE_REQUIRED: Required = (&["diff", "texture"], "diff 0.5 0.5 0.5");
+
+/// The shaders that are not procedural.
+const SHADERS: &[ShaderType] = &[
+    ShaderType {
+        name: "constant",
+        keys: &[NAME, TYPE, COLOR],
+        required: &[],
+        build: |d, _| Some(ShaderKind::Constant { color: d.color? }),
+    },
+    ShaderType {
+        name: "diffuse",
+        keys: &[NAME, TYPE, DIFF, TEXTURE],
+        required: &[DIFFUSE_REQUIRED],
+        build: |d, _| Some(ShaderKind::Diffuse { diffuse: d.diffuse? }),
+    },
+    ShaderType {
+        name: "phong",
+        keys: &[NAME, TYPE, DIFF, TEXTURE, SPEC, SAMPLES],
+        required: &[DIFFUSE_REQUIRED, (&["spec"], "spec 1 1 1 50")],
+        build: |d, _| {
+            let (specular, power) = d.specular?;
+            Some(ShaderKind::Phong { diffuse: d.diffuse?, specular, power, samples: d.samples.unwrap_or(4) })
+        },
+    },
+    ShaderType {
+        name: "mirror",
+        keys: &[NAME, TYPE, REFL],
+        required: &[(&["refl"], "refl 1 1 1")],
+        build: |d, _| Some(ShaderKind::Mirror { color: d.color? }),
+    },
+    ShaderType {
+        name: "glass",
+        keys: &[
+            NAME,
+            TYPE,
+            ETA,
+            COLOR,
+            // Sunflow: its own examples spell it with a `b`.
+            Key::new("absorbtion.distance", "absorbtion.distance 5", absorption_distance),
+            Key::new("absorbtion.color", "absorbtion.color 0.5 0.5 0.5", absorption_color),
+            Key::new("absorption.distance", "absorption.distance 5", absorption_distance),
+            Key::new("absorption.color", "absorption.color 0.5 0.5 0.5", absorption_color),
+        ],
+        required: &[(&["eta"], "eta 1.5"), (&["color"], "color 1 1 1")],
+        build: |d, span| {
+            Some(ShaderKind::Glass {
+                eta: d.eta?,
+                color: d.color?,
+                absorption_distance: d.absorption_distance.unwrap_or(0.0),
+                absorption_color: d.absorption_color.unwrap_or_else(|| Color::new_linear([0.5; 3], span)),
+            })
+        },
+    },
+];
+
+/// Sunflow's other shaders.
+const UNSUPPORTED: &[&str] = &[
+    "amb-occ",
+    "amb-occ2",
+    "shiny",
+    "ward",
+    "uber",
+    "view-caustics",
+    "view-irradiance",
+    "view-global",
+    "id",
+    "janino",
+];
+
+/// How a shader type is read.
+pub(super) enum Type {
+    Plain(&'static ShaderType),
+    Procedural(&'static Declaration),
+    Unsupported,
+}
+
+/// The shader type called so.
+pub(super) fn type_called(name: &str) -> Option<Type> {
+    let plain = SHADERS.iter().find(|shader| shader.name == name).map(Type::Plain);
+    let procedural = || procedural_declarations().iter().find(|d| d.name == name).map(|d| Type::Procedural(d));
+    plain.or_else(procedural).or_else(|| UNSUPPORTED.contains(&name).then_some(Type::Unsupported))
+}
+
+fn type_names() -> impl Iterator<Item = &'static str> + Clone {
+    let plain = SHADERS.iter().map(|shader| shader.name);
+    plain.chain(procedural_declarations().iter().map(|d| d.name)).chain(UNSUPPORTED.iter().copied())
+}
+
+impl Type {
+    /// The keywords that it takes: those of a procedural shader come from its declaration.
+    pub fn keys(&self) -> Vec<Key<Draft>> {
+        match self {
+            Type::Plain(shader) => shader.keys.to_vec(),
+            Type::Procedural(declaration) => {
+                let parameters = declaration.parameters.iter();
+                [NAME, TYPE].into_iter().chain(parameters.map(|p| Key::new(p.name, "", parameter_value))).collect()
+            }
+            Type::Unsupported => Vec::new(),
+        }
+    }
+
+    /// What the draft means, if nothing is missing; the span stands for values that were not written.
+    pub fn build(&self, draft: Draft, span: Span) -> Option<ShaderKind> {
+        match self {
+            Type::Plain(shader) => (shader.build)(draft, span),
+            Type::Procedural(declaration) => Some(ShaderKind::Procedural { declaration, settings: draft.settings }),
+            Type::Unsupported => None,
+        }
+    }
+
+    fn required(&self) -> Vec<Required> {
+        let own = match self {
+            Type::Plain(shader) => shader.required,
+            Type::Procedural(_) | Type::Unsupported => &[],
+        };
+        [NAME_REQUIRED].iter().chain(own).copied().collect()
+    }
+}
+
+impl Draft {
+    /// An empty draft of a procedural shader.
+    pub fn procedural(declaration: &'static Declaration) -> Self {
+        Draft { declaration: Some(declaration), ..Draft::default() }
+    }
+}
+
+pub(super) fn shader(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
+    parser.open("shader")?;
+    let Some(kind) = parser.outline().kind else {
+        parser.missing_type(head, "shader", type_names());
+        let outline = parser.skip_block(head);
+        parser.stand_in(outline.name, head);
+        return Ok(());
+    };
+    let found = match type_called(&kind.value) {
+        Some(Type::Unsupported) => {
+            parser.unsupported(head, &format!("shader type `{}`", kind.value));
+            None
+        }
+        None => {
+            let diagnostic = unknown_word("shader type", &kind, type_names());
+            parser.diagnostics.push(diagnostic);
+            None
+        }
+        known => known,
+    };
+    let Some(shader) = found else {
+        let outline = parser.skip_block(head);
+        parser.stand_in(outline.name, head);
+        return Ok(());
+    };
+    let mut draft = match shader {
+        Type::Procedural(declaration) => Draft::procedural(declaration),
+        _ => Draft::default(),
+    };
+    let grammar = Grammar { what: &kind.value, keys: &shader.keys(), bare: None };
+    let outcome = parser.block(head, &grammar, &mut draft);
+    let place = parser.span(head);
+    parser.require(&kind.value, &outcome, place, &shader.required());
+    // Its colour may stand without a keyword, which `require` cannot see.
+    if kind.value == "constant" && draft.color.is_none() && !outcome.failed {
+        let diagnostic = Diagnostic::error(place, "`constant` lacks `color`").hint("add `color 1 1 1`");
+        parser.diagnostics.push(diagnostic);
+    }
+    if let Some(name) = draft.name.take() {
+        // What lacks a value has been reported, and keeps its name for those who use it.
+        let kind = shader.build(draft, outcome.span).unwrap_or(ShaderKind::Unsupported);
+        parser.add_shader(Shader { name, kind, span: outcome.span });
+    }
+    Ok(())
+}
+
+impl Parser<'_> {
+    /// Keeps the name of a shader that could not be read, so that objects find it.
+    fn stand_in(&mut self, name: Option<Name>, head: Token) {
+        let end = self.lexer.position() as u32;
+        let span = Span { end, ..self.span(head) };
+        if let Some(name) = name {
+            self.add_shader(Shader { name, kind: ShaderKind::Unsupported, span });
+        }
+    }
+
+    fn add_shader(&mut self, shader: Shader) {
+        match self.shader_names.get(&shader.name.value) {
+            Some(first) => {
+                let first = *first;
+                self.duplicate("shader", &shader.name, first);
+            }
+            None => {
+                self.shader_names.insert(shader.name.value.clone(), shader.name.span);
+            }
+        }
+        self.scene.shaders.push(shader);
+    }
+
+    /// Warns that a name is taken.
+    pub(super) fn duplicate(&mut self, what: &str, name: &Name, first: Span) {
+        let message = format!("there is already {what} `{}`; names find the first one", shorten(&name.value));
+        self.diagnostics.push(Diagnostic::warning(name.span, message).label(first, "first declared here"));
+    }
+
+    /// Reports a block without `type`.
+    pub(super) fn missing_type(&mut self, head: Token, what: &str, names: impl Iterator<Item = &'static str>) {
+        let diagnostic = Diagnostic::error(self.span(head), format!("`{what}` lacks `type`"));
+        self.diagnostics.push(diagnostic.hint(format!("types are {}", crate::suggest::list_all(names))));
+    }
+}
+
+/// Reads the value of a declared parameter.
+fn parameter_value(parser: &mut Parser<'_>, draft: &mut Draft, key: Span) -> Parsed<()> {
+    let Context { name, .. } = parser.context;
+    let parameter = draft.declaration.and_then(|declaration| declaration.parameter(name));
+    let parameter = parameter.expect("the keywords are made of the parameters");
+    let value = parser.spanned(|parser| match parameter.kind {
+        Kind::Int { min, max } => {
+            let value = parser.spanned(Parser::int)?;
+            parser.require_range(value, min, max)?;
+            Ok(SettingValue::Int(value.value))
+        }
+        Kind::Float { min, max } => {
+            let value = parser.spanned(Parser::number::<f64>)?;
+            parser.require_range(value, min, max)?;
+            Ok(SettingValue::Float(value.value))
+        }
+        Kind::Color => Ok(SettingValue::Color(parser.color()?)),
+        Kind::Choice(words) => {
+            let choices: Vec<(&'static str, &'static str)> = words.iter().map(|word| (*word, *word)).collect();
+            let what = format!("`{name}`");
+            Ok(SettingValue::Choice(parser.choice(what.trim_matches('`'), &choices)?.value))
+        }
+    })?;
+    draft.settings.retain(|setting| setting.name != parameter.name);
+    draft.settings.push(Setting { name: parameter.name, value: value.value, span: key.to(value.span) });
+    Ok(())
+}
+
+impl Parser<'_> {
+    fn require_range<T: PartialOrd + std::fmt::Display>(&mut self, value: Spanned<T>, min: T, max: T) -> Parsed<()> {
+        if value.value >= min && value.value <= max {
+            return Ok(());
+        }
+        let message = format!("`{}` must be from {min} to {max}, and is {}", self.context.name, value.value);
+        self.failed_at = value.span.end;
+        self.diagnostics.push(Diagnostic::error(value.span, message));
+        Err(Failed)
+    }
+}

@@ -1,0 +1,223 @@
+//! The top level of a file: which words start a statement, and what happens between them.
+
+use super::value::shorten;
+use super::{Context, Parsed, Parser, camera, image, include, light, object, shader};
+use crate::description::{Dialect, Filter};
+use crate::diagnostic::Diagnostic;
+use crate::lexer::Token;
+use crate::source::Spanned;
+use crate::suggest;
+
+/// How a statement goes on after its keyword.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    /// `{ … }`.
+    Block,
+    /// A few words.
+    Line,
+}
+
+struct Statement {
+    name: &'static str,
+    form: Form,
+    /// A correct use of it, for hints.
+    example: &'static str,
+    read: fn(&mut Parser<'_>, Token) -> Parsed<()>,
+}
+
+const fn block(name: &'static str, read: fn(&mut Parser<'_>, Token) -> Parsed<()>) -> Statement {
+    Statement { name, form: Form::Block, example: "", read }
+}
+
+const fn line(name: &'static str, example: &'static str, read: fn(&mut Parser<'_>, Token) -> Parsed<()>) -> Statement {
+    Statement { name, form: Form::Line, example, read }
+}
+
+/// Everything that may stand at top level (format reference, §2.0), and our own `dialect`.
+const STATEMENTS: &[Statement] = &[
+    block("image", image::image),
+    block("background", image::background),
+    block("trace-depths", image::trace_depths),
+    block("camera", camera::camera),
+    block("light", light::light),
+    block("shader", shader::shader),
+    block("object", object::object),
+    block("instance", object::instance),
+    block("gi", unsupported),
+    block("photons", unsupported),
+    block("lightserver", unsupported),
+    block("modifier", unsupported),
+    line("include", "include \"file.sc\"", include::include),
+    line("includepath", "includepath \"folder\"", include::include_path),
+    line("texturepath", "texturepath \"folder\"", include::texture_path),
+    line("override", "override NAME false", override_shader),
+    line("dialect", "dialect report", dialect),
+    line("filter", "filter mitchell", filter),
+    line("bucket", "bucket 32 hilbert", bucket),
+    line("accel", "accel bih", accel),
+];
+
+/// Whether the word, followed by `{`, starts a block at top level.
+pub(super) fn is_block(word: &[u8]) -> bool {
+    STATEMENTS.iter().any(|statement| statement.form == Form::Block && statement.name.as_bytes() == word)
+}
+
+impl Parser<'_> {
+    /// Reads all statements of the current file; the result is how many there were.
+    pub(super) fn statements(&mut self) -> usize {
+        let mut count = 0;
+        while let Some(token) = self.next() {
+            let word = token.bytes(&self.bytes);
+            let Some(statement) = STATEMENTS.iter().find(|statement| statement.name.as_bytes() == word) else {
+                self.unknown_statement(token);
+                continue;
+            };
+            count += 1;
+            self.context = Context { name: statement.name, example: statement.example };
+            if (statement.read)(self, token).is_err() {
+                self.skip_to_statement();
+            }
+        }
+        if let Some(start) = self.lexer.unclosed_comment {
+            let opening = self.span(Token { start, end: start + 2 });
+            let message = "this block comment is never closed, and hides the rest of the file";
+            self.diagnostics.push(Diagnostic::warning(opening, message).hint("end it with the word `*/`"));
+        }
+        count
+    }
+
+    /// On to the next word that starts a statement.
+    fn skip_to_statement(&mut self) {
+        loop {
+            let before = self.lexer;
+            let Some(token) = self.next() else { return };
+            let word = token.bytes(&self.bytes);
+            let starts = STATEMENTS.iter().any(|s| s.form == Form::Line && s.name.as_bytes() == word);
+            if starts || self.starts_block(token) {
+                self.lexer = before;
+                return;
+            }
+        }
+    }
+
+    fn unknown_statement(&mut self, token: Token) {
+        let span = self.span(token);
+        if self.is(token, "}") {
+            self.loose(super::loose::Loose::StrayBrace, span);
+            return;
+        }
+        if self.is(token, "{") {
+            self.diagnostics.push(Diagnostic::error(span, "this `{` follows no keyword"));
+            self.skip_group();
+            return;
+        }
+        let text = self.text(token);
+        let glued = text.strip_suffix('{').filter(|word| is_block(word.as_bytes()));
+        if let Some(keyword) = glued {
+            let message = format!("unknown keyword `{}`", shorten(&text));
+            let hint = format!("put a blank before the brace: `{keyword} {{`");
+            self.diagnostics.push(Diagnostic::error(span, message).hint(hint));
+            self.skip_group();
+            return;
+        }
+        let names = STATEMENTS.iter().map(|statement| statement.name);
+        self.diagnostics.push(match suggest::nearest(&text, names) {
+            Some(nearest) => Diagnostic::error(span, format!("unknown keyword `{}`", shorten(&text)))
+                .hint(format!("did you mean `{nearest}`?")),
+            None => Diagnostic::warning(span, format!("skipped: unknown keyword `{}`", shorten(&text))),
+        });
+        if self.take("{").is_some() {
+            self.skip_group();
+        } else {
+            self.skip_to_statement();
+        }
+    }
+
+    /// Warns that something of Sunflow's is passed over.
+    pub(super) fn unsupported(&mut self, token: Token, what: &str) {
+        let message = format!("skipped: {what} is not supported yet");
+        self.diagnostics.push(Diagnostic::warning(self.span(token), message));
+    }
+}
+
+fn unsupported(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
+    let keyword = STATEMENTS.iter().find(|s| parser.is(head, s.name)).map_or("", |statement| statement.name);
+    parser.open(keyword)?;
+    let outline = parser.skip_block(head);
+    let is_off = outline.kind.is_some_and(|kind| matches!(kind.value.as_str(), "none" | "null"));
+    if !(keyword == "gi" && is_off) {
+        parser.unsupported(head, &format!("`{keyword}`"));
+    }
+    Ok(())
+}
+
+fn override_shader(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
+    let name = parser.word("the name of a shader")?;
+    parser.boolean()?;
+    parser.scene.override_shader = (name.value != "none").then_some(name);
+    Ok(())
+}
+
+fn dialect(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
+    let choices = [("sunflow", Dialect::Sunflow), ("report", Dialect::Report)];
+    let dialect = parser.choice("a dialect", &choices)?;
+    if let Some(first) = parser.scene.dialect.filter(|first| first.value != dialect.value) {
+        let diagnostic = Diagnostic::error(dialect.span, "the scene names two dialects");
+        parser.diagnostics.push(diagnostic.label(first.span, "first named here").hint("keep one of them"));
+        return Ok(());
+    }
+    parser.scene.dialect.get_or_insert(dialect);
+    Ok(())
+}
+
+/// `filter NAME [WIDTH HEIGHT]`, the old place of the filter; the sizes mean nothing.
+fn filter(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
+    parser.filter()?;
+    for _ in 0..2 {
+        if parser.number_follows() {
+            parser.number::<f32>()?;
+        }
+    }
+    Ok(())
+}
+
+/// In which order Sunflow renders: nothing that could be seen.
+fn bucket(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
+    parser.int()?;
+    parser.word("a bucket order").map(drop)
+}
+
+/// Sunflow ignores it as well.
+fn accel(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
+    parser.word("the name of an acceleration structure").map(drop)
+}
+
+/// Filters by their names in the format.
+const FILTERS: &[(&str, Filter)] = &[
+    ("box", Filter::Box),
+    ("triangle", Filter::Triangle),
+    ("gaussian", Filter::Gaussian),
+    ("mitchell", Filter::Mitchell),
+    ("catmull-rom", Filter::CatmullRom),
+    ("blackman-harris", Filter::BlackmanHarris),
+    ("sinc", Filter::Sinc),
+    ("lanczos", Filter::Lanczos),
+    ("bspline", Filter::Bspline),
+];
+
+impl Parser<'_> {
+    /// Reads a filter; as in Sunflow an unknown one is `box`.
+    pub(super) fn filter(&mut self) -> Parsed<()> {
+        let word = self.word("a filter")?;
+        let filter = FILTERS.iter().find(|(name, _)| *name == word.value).map(|(_, filter)| *filter);
+        if filter.is_none() {
+            let names = FILTERS.iter().map(|(name, _)| *name);
+            let mut diagnostic = super::value::unknown_word("filter", &word, names);
+            diagnostic.severity = crate::Severity::Warning;
+            diagnostic.message.push_str("; `box` is used");
+            self.diagnostics.push(diagnostic);
+        }
+        self.scene.image.filter = Some(Spanned::new(filter.unwrap_or_default(), word.span));
+        Ok(())
+    }
+}
