@@ -12,7 +12,6 @@ mod image;
 mod include;
 mod light;
 mod loose;
-mod materials;
 mod mesh;
 mod object;
 mod set;

@@ -1,10 +1,11 @@
 //! Reads the `shader` block: the plain shaders from the table here, the procedural ones from their declarations.
 
+use jaspe_texture::Texture;
 use jaspe_texture::declare::{Declaration, Kind};
 
 use super::block::{Grammar, Key, Required};
 use super::loose::Loose;
-use super::materials::procedural_declarations;
+
 use super::value::{shorten, unknown_word};
 use super::{Context, Failed, Parsed, Parser};
 use crate::description::{Color, ColorOrTexture, Name, Setting, SettingValue, Shader, ShaderKind};
@@ -178,13 +179,13 @@ pub(super) enum Type {
 /// The shader type called so.
 pub(super) fn type_called(name: &str) -> Option<Type> {
     let plain = SHADERS.iter().find(|shader| shader.name == name).map(Type::Plain);
-    let procedural = || procedural_declarations().iter().find(|d| d.name == name).map(|d| Type::Procedural(d));
+    let procedural = || Texture::ALL.iter().find(|d| d.name == name).map(|d| Type::Procedural(d));
     plain.or_else(procedural).or_else(|| UNSUPPORTED.contains(&name).then_some(Type::Unsupported))
 }
 
 fn type_names() -> impl Iterator<Item = &'static str> + Clone {
     let plain = SHADERS.iter().map(|shader| shader.name);
-    plain.chain(procedural_declarations().iter().map(|d| d.name)).chain(UNSUPPORTED.iter().copied())
+    plain.chain(Texture::ALL.iter().map(|d| d.name)).chain(UNSUPPORTED.iter().copied())
 }
 
 impl Type {
