@@ -89,3 +89,19 @@ pub struct Stats {
     /// Threads that worked.
     pub threads: usize,
 }
+
+impl Stats {
+    /// The counts of two parts of a rendering together; the threads are those of the larger.
+    #[must_use]
+    pub fn plus(self, other: Stats) -> Stats {
+        Stats {
+            samples: self.samples + other.samples,
+            camera_rays: self.camera_rays + other.camera_rays,
+            shadow_rays: self.shadow_rays + other.shadow_rays,
+            reflection_rays: self.reflection_rays + other.reflection_rays,
+            refraction_rays: self.refraction_rays + other.refraction_rays,
+            texture_points: self.texture_points + other.texture_points,
+            threads: self.threads.max(other.threads),
+        }
+    }
+}

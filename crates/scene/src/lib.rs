@@ -19,3 +19,4 @@ pub use description::{Dialect, Scene};
 pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
 pub use parser::{parse, read, set};
 pub use source::{DiskLoader, Loader, MemoryLoader, Position, Source, Sources, Span, Spanned};
+pub use suggest::nearest;

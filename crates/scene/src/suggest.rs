@@ -4,7 +4,7 @@
 const LONGEST: usize = 40;
 
 /// The nearest of `candidates`, if it is near enough to be meant: one slip in three letters.
-pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if word.chars().count() > LONGEST {
         return None;
     }

@@ -1,0 +1,275 @@
+//! Scene → [`CompiledScene`]: names resolved, transforms baked, textures loaded, hierarchy built, dialect chosen.
+//! Past this point nothing has a name, and nothing is optional.
+
+mod materials;
+mod objects;
+
+use glam::Vec3;
+use jaspe_scene::description::{Camera as CameraDescription, Filter, Lens, LightKind, View};
+use jaspe_scene::{Diagnostic, Diagnostics, Dialect, Loader, Scene};
+
+use crate::camera::Camera;
+use crate::filter::FilterSampler;
+use crate::geometry::Geometry;
+use crate::light::Light;
+use crate::material::Material;
+use crate::options::{CompileOptions, RenderOptions};
+use crate::report::{Report, ReportCamera, ReportLight};
+use crate::sampler::SampleKey;
+use crate::sunflow::Sunflow;
+use crate::wave::CameraSample;
+
+/// A scene ready to render: immutable and valid.
+#[derive(Debug)]
+pub struct CompiledScene {
+    pub(crate) size: [u32; 2],
+    pub(crate) geometry: Geometry,
+    pub(crate) materials: Vec<Material>,
+    pub(crate) meaning: Meaning,
+    pub(crate) sampling: Sampling,
+}
+
+/// What depends on the dialect.
+#[derive(Debug)]
+pub(crate) enum Meaning {
+    Sunflow { rules: Sunflow, camera: Camera, filter: FilterSampler },
+    Report { rules: Report },
+}
+
+/// How many samples pixels get.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Sampling {
+    /// The same number everywhere.
+    Fixed { count: u32 },
+    /// `4^level × repeats` per pixel, from the least level to the most, where `contrast` asks for it.
+    Adaptive { min_level: u32, max_level: u32, repeats: u32, contrast: f32 },
+    /// `edge² × repeats` per pixel, placed as the 2010 program did.
+    Report { edge: u32, repeats: u32 },
+}
+
+/// What [`compile`] made of a scene, with everything it has to say about it.
+#[derive(Debug)]
+pub struct Compilation {
+    /// The scene, unless the diagnostics hold an error.
+    pub scene: Option<CompiledScene>,
+    /// In the order in which they were found.
+    pub diagnostics: Diagnostics,
+}
+
+/// Sunflow's picture size where the scene names none.
+const DEFAULT_SIZE: [u32; 2] = [640, 480];
+
+impl CompiledScene {
+    /// Width and height of the picture in pixels.
+    pub fn resolution(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Whose meaning the scene's words were given.
+    pub fn dialect(&self) -> Dialect {
+        match self.meaning {
+            Meaning::Sunflow { .. } => Dialect::Sunflow,
+            Meaning::Report { .. } => Dialect::Report,
+        }
+    }
+
+    /// Sample `index` of `end` of a pixel, and what it counts there.
+    pub(crate) fn camera_sample(&self, x: u32, y: u32, index: u32, end: u32, seed: u64) -> (CameraSample, f32) {
+        let key = SampleKey::new(x, y, index, seed);
+        match &self.meaning {
+            Meaning::Sunflow { camera, filter, .. } => {
+                // A single sample stands for the pixel's centre, unless it is one of many for the lens.
+                let ([dx, dy], weight) = if end == 1 { ([0.0; 2], 1.0) } else { filter.sample(key.pair(0)) };
+                let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
+                let ray = camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, lens);
+                (CameraSample { ray, key }, weight)
+            }
+            Meaning::Report { rules } => {
+                let (edge, repeats) = match self.sampling {
+                    Sampling::Report { edge, repeats } => (edge, repeats),
+                    _ => (1, end),
+                };
+                let [px, py] = ReportCamera::position(x, y, &key, edge, repeats);
+                (CameraSample { ray: Some(rules.camera.ray(px, py)), key }, 1.0)
+            }
+        }
+    }
+}
+
+/// Resolves names, bakes transforms, loads textures and builds the hierarchy.
+///
+/// The scene is compiled as far as it goes, so that all errors come in one run; with any error there is no scene.
+pub fn compile(scene: &Scene, loader: &dyn Loader, options: &CompileOptions) -> Compilation {
+    let mut diagnostics = Diagnostics::default();
+    let dialect = options.dialect.or(scene.dialect.map(|dialect| dialect.value)).unwrap_or_default();
+    let (materials, names) = materials::compile(scene, dialect, loader, options.look, &mut diagnostics);
+    let planned = objects::compile(scene, dialect, &names, &mut diagnostics);
+    let Some(camera) = scene.cameras.last() else {
+        diagnostics.push(Diagnostic::error(None, "the scene has no camera").hint(
+            "add one, for instance `camera { type pinhole eye 0 0 10 target 0 0 0 up 0 1 0 fov 60 aspect 1.333 }`",
+        ));
+        return Compilation { scene: None, diagnostics };
+    };
+    let scene_size = scene.image.resolution.map_or(DEFAULT_SIZE, |size| size.value);
+    let size = options.resolution.unwrap_or(scene_size);
+    let meaning = match dialect {
+        Dialect::Sunflow => sunflow(scene, camera, size, &mut diagnostics),
+        Dialect::Report => {
+            let camera = report_camera(camera, scene_size[0], size, &mut diagnostics);
+            report(scene, camera, planned.plane_normals, &planned.geometry, size)
+        }
+    };
+    let sampling = sampling(scene, dialect, options);
+    let compiled = CompiledScene { size, geometry: planned.geometry, materials, meaning, sampling };
+    if compiled.geometry.objects.is_empty() && scene.background.is_none() {
+        diagnostics.push(Diagnostic::warning(None, "the scene shows nothing: it has no visible object"));
+    } else if options.look.is_none() {
+        note_darkness(scene, &compiled, &mut diagnostics);
+    }
+    let scene = (!diagnostics.has_errors()).then_some(compiled);
+    Compilation { scene, diagnostics }
+}
+
+fn sampling(scene: &Scene, dialect: Dialect, options: &CompileOptions) -> Sampling {
+    let aa = options.aa.or(scene.image.aa.map(|aa| aa.value)).unwrap_or([0, 0]);
+    let [min, max] = [aa[0].clamp(-4, 5), aa[1].clamp(aa[0].clamp(-4, 5), 5)];
+    let repeats = scene.image.samples.map_or(1, |samples| samples.value.clamp(1, 256));
+    if let Some(count) = options.samples {
+        return Sampling::Fixed { count: count.max(1) };
+    }
+    match dialect {
+        Dialect::Report => Sampling::Report { edge: 1 << max.max(0), repeats },
+        Dialect::Sunflow => {
+            // Sunflow goes below one sample per pixel; every pixel gets one here.
+            let (min_level, max_level) = (min.max(0) as u32, max.max(0) as u32);
+            if min_level == max_level {
+                return Sampling::Fixed { count: (1 << (2 * min_level)) * repeats };
+            }
+            let contrast = scene.image.contrast.map_or(0.1, |contrast| contrast.value.clamp(0.0, 1.0));
+            Sampling::Adaptive { min_level, max_level, repeats, contrast }
+        }
+    }
+}
+
+fn sunflow(scene: &Scene, camera: &CameraDescription, size: [u32; 2], diagnostics: &mut Diagnostics) -> Meaning {
+    if let Some(shutter) = camera.shutter
+        && shutter.value[1] > shutter.value[0]
+    {
+        diagnostics.push(
+            Diagnostic::warning(shutter.span, "motion is not rendered yet: everything stands as at the first step")
+                .hint("leave `shutter` out for the same picture without this warning"),
+        );
+    }
+    let depth = |written: Option<jaspe_scene::Spanned<u32>>| written.map_or(4, |d| d.value).min(255) as u8;
+    let rules = Sunflow {
+        lights: scene.lights.iter().filter_map(|light| sunflow_light(&light.kind)).collect(),
+        background: scene.background.as_ref().map(|background| Vec3::from_array(background.color.linear())),
+        max_reflection: depth(scene.trace_depths.reflection),
+        max_refraction: depth(scene.trace_depths.refraction),
+    };
+    let filter = FilterSampler::new(scene.image.filter.map_or(Filter::Box, |filter| filter.value));
+    Meaning::Sunflow { rules, camera: Camera::new(camera, size), filter }
+}
+
+/// A light in Sunflow's meaning; `None` for one that shines nowhere.
+fn sunflow_light(kind: &LightKind) -> Option<Light> {
+    match kind {
+        LightKind::Point { color, power, position } => Some(Light::Point {
+            position: Vec3::from_array(*position),
+            power: Vec3::from_array(color.linear()) * *power,
+        }),
+        LightKind::Directional { source, target, radius, emit, intensity } => {
+            let source = Vec3::from_array(*source);
+            let direction = (Vec3::from_array(*target) - source).try_normalize()?;
+            let irradiance = Vec3::from_array(emit.linear()) * *intensity;
+            Some(Light::Directional { source, direction, radius: *radius, irradiance })
+        }
+    }
+}
+
+/// The original's camera: pinhole whatever the lens, by `eye`, `target` and `up`.
+fn report_camera(
+    camera: &CameraDescription,
+    scene_width: u32,
+    size: [u32; 2],
+    diagnostics: &mut Diagnostics,
+) -> ReportCamera {
+    let fov = match camera.lens {
+        Lens::Pinhole { fov, .. } | Lens::Thinlens { fov, .. } => fov,
+        Lens::Spherical | Lens::Fisheye => {
+            diagnostics.push(
+                Diagnostic::error(camera.span, "this lens does not exist in the dialect `report`")
+                    .hint("use `type pinhole`, or render with `--dialect sunflow`"),
+            );
+            90.0
+        }
+    };
+    let view = match &camera.view {
+        View::LookAt { eye, target, up } => [*eye, *target, *up].map(Vec3::from_array),
+        View::Transform(transform) => {
+            let matrix: crate::affine::Affine = crate::affine::matrix(&transform.kind).into();
+            let eye = matrix.point(Vec3::ZERO);
+            [eye, eye + matrix.vector(Vec3::NEG_Z), matrix.vector(Vec3::Y)]
+        }
+    };
+    ReportCamera::new(view, fov, scene_width, size)
+}
+
+fn report(
+    scene: &Scene,
+    camera: ReportCamera,
+    plane_normals: Vec<Vec3>,
+    geometry: &Geometry,
+    size: [u32; 2],
+) -> Meaning {
+    let lights = scene.lights.iter().filter_map(|light| match &light.kind {
+        LightKind::Point { color, power, position } => Some(ReportLight {
+            position: Vec3::from_array(*position),
+            color: Vec3::from_array(color.raw()),
+            range: *power,
+        }),
+        // The original skips every other light.
+        LightKind::Directional { .. } => None,
+    });
+    let mut rules = Report { camera, lights: lights.collect(), plane_normals, plane_axes: Vec::new() };
+    rules.fix_plane_axes(geometry, size);
+    Meaning::Report { rules }
+}
+
+/// Width and height of the probe that looks for darkness.
+const PROBE: [u32; 2] = [32, 24];
+/// Display value (of 1) below which a lit surface counts as nearly black.
+const DARK: f64 = 0.22;
+
+/// Notes that a scene meant for the 2010 program is nearly black in Sunflow's meaning: its `power` is a range there.
+fn note_darkness(scene: &Scene, compiled: &CompiledScene, diagnostics: &mut Diagnostics) {
+    let Meaning::Sunflow { rules, camera, .. } = &compiled.meaning else { return };
+    let Some(light) = scene.lights.iter().find(|light| matches!(light.kind, LightKind::Point { .. })) else { return };
+    if rules.lights.is_empty() || diagnostics.has_errors() {
+        return;
+    }
+    let samples: Vec<CameraSample> = (0..PROBE[0] * PROBE[1])
+        .map(|i| {
+            let at = |k: usize, cell: u32| (cell as f32 + 0.5) / PROBE[k] as f32 * compiled.size[k] as f32;
+            let ray = camera.ray(at(0, i % PROBE[0]), at(1, i / PROBE[0]), [0.5; 2]);
+            CameraSample { ray, key: SampleKey::new(i, 0, 0, RenderOptions::default().seed) }
+        })
+        .collect();
+    let mut results = Vec::new();
+    crate::wave::Workspace::default().trace(compiled, rules, &samples, &mut results);
+    let mut lit: Vec<f32> = results
+        .iter()
+        .filter(|result| result.seen.object != crate::wave::Seen::NOTHING.object)
+        .map(|result| result.color.max_element())
+        .collect();
+    lit.sort_by(f32::total_cmp);
+    // The brightest twentieth of what is seen decides.
+    let Some(bright) = lit.get(lit.len() * 19 / 20) else { return };
+    if crate::develop::srgb_encode(f64::from(*bright)) < DARK {
+        diagnostics.push(
+            Diagnostic::note(light.span, "the lights are so weak that the picture will be nearly black")
+                .hint("`power` is radiant power here, and light falls off with the square of the distance")
+                .hint("for a scene made for the 2010 program, render with `--dialect report`, or put the line `dialect report` first"),
+        );
+    }
+}

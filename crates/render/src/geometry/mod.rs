@@ -1,0 +1,232 @@
+//! Shapes in space and the rays that meet them.
+//!
+//! Everything bounded lies in one tree ([`traverse::Tree`]); planes are infinite and tested one by one. What a ray
+//! meets is named by an [`Id`]; where and how it lies there is worked out in [`surface`].
+
+mod bvh;
+mod plan;
+mod simd;
+mod surface;
+mod traverse;
+
+#[cfg(test)]
+mod tests;
+
+use glam::{Vec2, Vec3};
+
+use crate::affine::Affine;
+pub(crate) use plan::{Placement, Plan};
+pub(crate) use surface::Surface;
+pub(crate) use traverse::Scratch;
+
+/// A primitive: which object, and which of its triangles (0 for everything else).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Id {
+    pub object: u32,
+    pub index: u32,
+}
+
+impl Id {
+    /// No primitive.
+    pub const NONE: Id = Id { object: u32::MAX, index: u32::MAX };
+}
+
+/// A ray: points `origin + t · direction` with `t_min < t < t_max`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ray {
+    pub origin: Vec3,
+    /// Of unit length in the world.
+    pub direction: Vec3,
+    pub t_min: f32,
+    pub t_max: f32,
+    /// The primitive that the ray leaves and cannot meet again at once.
+    pub skip: Id,
+}
+
+/// What a ray meets first. `u` and `v` weight a triangle's second and third vertex.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Hit {
+    pub t: f32,
+    pub u: f32,
+    pub v: f32,
+    pub id: Id,
+}
+
+impl Hit {
+    /// Nothing, infinitely far away.
+    pub const NONE: Hit = Hit { t: f32::INFINITY, u: 0.0, v: 0.0, id: Id::NONE };
+}
+
+/// An infinite plane in the world.
+#[derive(Debug, Clone)]
+pub(crate) struct PlaneShape {
+    pub point: Vec3,
+    /// Of unit length.
+    pub normal: Vec3,
+    /// Gradients of the texture coordinates, where three points define them.
+    pub uv: Option<[Vec3; 2]>,
+    pub object: u32,
+}
+
+/// Triangles, in the world where they are seen once, in their own space where instances share them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct MeshShape {
+    pub points: Vec<Vec3>,
+    pub triangles: Vec<[u32; 3]>,
+    pub normals: PerVertex<Vec3>,
+    pub uvs: PerVertex<Vec2>,
+    /// Material slot per triangle; empty means slot 0 for all.
+    pub slots: Vec<u32>,
+}
+
+/// Data per vertex of a mesh, per corner, or none.
+#[derive(Debug, Clone, Default)]
+pub(crate) enum PerVertex<T> {
+    #[default]
+    None,
+    Vertex(Vec<T>),
+    Corner(Vec<T>),
+}
+
+impl<T: Copy> PerVertex<T> {
+    /// The three values of one triangle.
+    fn triangle(&self, mesh: &MeshShape, index: usize) -> Option<[T; 3]> {
+        match self {
+            PerVertex::None => None,
+            PerVertex::Vertex(values) => Some(mesh.triangles[index].map(|i| values[i as usize])),
+            PerVertex::Corner(values) => Some([0, 1, 2].map(|k| values[3 * index + k])),
+        }
+    }
+}
+
+impl MeshShape {
+    /// The corners of a triangle, in the mesh's space.
+    #[inline]
+    pub fn triangle_points(&self, index: usize) -> [Vec3; 3] {
+        self.triangles[index].map(|i| self.points[i as usize])
+    }
+
+    /// The texture coordinates of a triangle's corners.
+    pub fn triangle_uvs(&self, index: usize) -> Option<[Vec2; 3]> {
+        self.uvs.triangle(self, index)
+    }
+}
+
+/// What an object is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Shape {
+    Sphere {
+        center: Vec3,
+        radius: f32,
+    },
+    /// Index into the planes.
+    Plane(u32),
+    /// Index into the meshes; the mesh is in world space.
+    Mesh(u32),
+    /// Index into the meshes; the mesh is in object space.
+    MeshInstance(u32),
+    /// A unit sphere under a map that is no similarity.
+    Ellipsoid,
+}
+
+/// One visible object.
+#[derive(Debug, Clone)]
+pub(crate) struct Object {
+    pub shape: Shape,
+    pub object_from_world: Affine,
+    pub world_from_object: Affine,
+    /// First material; mesh slots count from here.
+    pub materials: Vec<u32>,
+}
+
+/// All shapes of a scene.
+#[derive(Debug, Clone)]
+pub(crate) struct Geometry {
+    tree: traverse::Tree,
+    pub planes: Vec<PlaneShape>,
+    pub meshes: Vec<MeshShape>,
+    pub objects: Vec<Object>,
+}
+
+impl Geometry {
+    /// Whether a ray that leaves a primitive of this object in a straight line cannot meet it again.
+    #[inline]
+    pub fn is_flat(&self, object: u32) -> bool {
+        !matches!(self.objects[object as usize].shape, Shape::Sphere { .. } | Shape::Ellipsoid)
+    }
+
+    /// The first hit of every ray.
+    pub fn closest(&self, rays: &[impl AsRef<Ray>], hits: &mut Vec<Hit>, scratch: &mut Scratch) {
+        hits.clear();
+        #[cfg(target_arch = "x86_64")]
+        if simd::has_avx2() {
+            #[allow(unsafe_code, reason = "the processor was asked for AVX2")]
+            unsafe {
+                return self.closest_avx2(rays, hits, scratch);
+            }
+        }
+        self.closest_with::<simd::Portable>(rays, hits, scratch);
+    }
+
+    /// For every shadow ray, whether something lies before its end.
+    pub fn occluded(&self, rays: &[impl AsRef<Ray>], blocked: &mut Vec<bool>, scratch: &mut Scratch) {
+        blocked.clear();
+        #[cfg(target_arch = "x86_64")]
+        if simd::has_avx2() {
+            #[allow(unsafe_code, reason = "the processor was asked for AVX2")]
+            unsafe {
+                return self.occluded_avx2(rays, blocked, scratch);
+            }
+        }
+        self.occluded_with::<simd::Portable>(rays, blocked, scratch);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+    fn closest_avx2(&self, rays: &[impl AsRef<Ray>], hits: &mut Vec<Hit>, scratch: &mut Scratch) {
+        self.closest_with::<simd::Avx2>(rays, hits, scratch);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+    fn occluded_avx2(&self, rays: &[impl AsRef<Ray>], blocked: &mut Vec<bool>, scratch: &mut Scratch) {
+        self.occluded_with::<simd::Avx2>(rays, blocked, scratch);
+    }
+
+    #[inline(always)]
+    fn closest_with<S: simd::Simd>(&self, rays: &[impl AsRef<Ray>], hits: &mut Vec<Hit>, scratch: &mut Scratch) {
+        for ray in rays {
+            let ray = ray.as_ref();
+            let mut hit = Hit { t: ray.t_max, ..Hit::NONE };
+            self.tree.closest::<S>(ray, &mut hit, scratch);
+            for plane in &self.planes {
+                if let Some(t) = plane.intersect(ray, hit.t) {
+                    hit = Hit { t, u: 0.0, v: 0.0, id: plane.id() };
+                }
+            }
+            hits.push(hit);
+        }
+    }
+
+    #[inline(always)]
+    fn occluded_with<S: simd::Simd>(&self, rays: &[impl AsRef<Ray>], blocked: &mut Vec<bool>, scratch: &mut Scratch) {
+        for ray in rays {
+            let ray = ray.as_ref();
+            let by_plane = self.planes.iter().any(|plane| plane.intersect(ray, ray.t_max).is_some());
+            blocked.push(by_plane || self.tree.occluded::<S>(ray, scratch));
+        }
+    }
+}
+
+impl PlaneShape {
+    fn id(&self) -> Id {
+        Id { object: self.object, index: 0 }
+    }
+
+    /// The distance at which `ray` crosses the plane, if that is before `t_max`.
+    #[inline(always)]
+    fn intersect(&self, ray: &Ray, t_max: f32) -> Option<f32> {
+        let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
+        (t > ray.t_min && t < t_max && ray.skip != self.id()).then_some(t)
+    }
+}

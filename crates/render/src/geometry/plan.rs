@@ -1,0 +1,265 @@
+//! Gathers the shapes of a scene and builds its [`Geometry`].
+//!
+//! A mesh that is seen once is baked into world space, so that its triangles share the top tree; one that is seen
+//! several times keeps a tree of its own, and every appearance is an instance of it.
+
+use glam::{DMat4, DVec3, Vec3};
+
+use super::bvh::{self, Aabb, Child, Item, Kind, Node};
+use super::traverse::{InstanceLeaf, SphereBlock, Tree, TriangleBlock};
+use super::{Geometry, Id, MeshShape, Object, PerVertex, PlaneShape, Shape};
+use crate::affine::{self, Affine};
+
+/// Where an object stands and what it is made of.
+#[derive(Debug, Clone)]
+pub(crate) struct Placement {
+    pub world_from_object: DMat4,
+    pub object_from_world: DMat4,
+    pub materials: Vec<u32>,
+}
+
+impl Placement {
+    /// A placement by `world_from_object`, unless that map cannot be inverted.
+    pub fn new(world_from_object: DMat4, materials: Vec<u32>) -> Option<Self> {
+        let object_from_world = affine::inverse(world_from_object)?;
+        Some(Placement { world_from_object, object_from_world, materials })
+    }
+}
+
+/// Shapes on their way into a [`Geometry`].
+#[derive(Debug, Default)]
+pub(crate) struct Plan {
+    planes: Vec<PlaneShape>,
+    meshes: Vec<MeshShape>,
+    objects: Vec<Object>,
+    /// Objects that are instances of a mesh, with its index; `None` for the unit sphere.
+    instances: Vec<(u32, Option<u32>, DMat4)>,
+}
+
+impl Plan {
+    fn object(&mut self, shape: Shape, place: &Placement) -> u32 {
+        self.objects.push(Object {
+            shape,
+            object_from_world: place.object_from_world.into(),
+            world_from_object: place.world_from_object.into(),
+            materials: place.materials.clone(),
+        });
+        (self.objects.len() - 1) as u32
+    }
+
+    /// The unit sphere, placed.
+    pub fn sphere(&mut self, place: &Placement) {
+        match affine::similarity_scale(place.world_from_object) {
+            Some(scale) => {
+                let center = place.world_from_object.transform_point3(DVec3::ZERO).as_vec3();
+                self.object(Shape::Sphere { center, radius: scale as f32 }, place);
+            }
+            None => {
+                let object = self.object(Shape::Ellipsoid, place);
+                self.instances.push((object, None, place.world_from_object));
+            }
+        }
+    }
+
+    /// A plane given in object space; `uv` are two edge vectors along which the texture coordinates run.
+    pub fn plane(&mut self, point: Vec3, normal: Vec3, uv: Option<[Vec3; 2]>, place: &Placement) {
+        let object = self.object(Shape::Plane(self.planes.len() as u32), place);
+        let back: Affine = place.object_from_world.into();
+        let forth: Affine = place.world_from_object.into();
+        let uv = uv.map(|edges| dual_basis(edges.map(|edge| forth.vector(edge))));
+        let normal = back.transposed(normal).normalize_or(Vec3::Z);
+        self.planes.push(PlaneShape { point: forth.point(point), normal, uv, object });
+    }
+
+    /// A mesh in object space and all its appearances.
+    pub fn mesh(&mut self, mut mesh: MeshShape, places: &[Placement]) {
+        let index = self.meshes.len() as u32;
+        match places {
+            [] => return,
+            [place] => {
+                bake(&mut mesh, place);
+                self.object(Shape::Mesh(index), place);
+            }
+            _ => {
+                for place in places {
+                    let object = self.object(Shape::MeshInstance(index), place);
+                    self.instances.push((object, Some(index), place.world_from_object));
+                }
+            }
+        }
+        self.meshes.push(mesh);
+    }
+
+    /// Builds the tree.
+    pub fn finish(self) -> Geometry {
+        let mut builder = Builder::default();
+        let shared = self.shared_trees(&mut builder);
+        let mut roots = Vec::new();
+        roots.extend(builder.triangles_of(self.objects.iter().enumerate().filter_map(|(object, o)| match o.shape {
+            Shape::Mesh(mesh) => Some((&self.meshes[mesh as usize], object as u32)),
+            _ => None,
+        })));
+        roots.extend(builder.spheres_of(self.objects.iter().enumerate().filter_map(|(object, o)| match o.shape {
+            Shape::Sphere { center, radius } => Some((center, radius, object as u32)),
+            _ => None,
+        })));
+        roots.extend(builder.instances_of(&self.instances, &shared, &self.objects));
+        let root = builder.join(&roots);
+        let Builder { nodes, triangles, spheres, instances } = builder;
+        let tree = Tree { root, nodes, triangles, spheres, instances };
+        Geometry { tree, planes: self.planes, meshes: self.meshes, objects: self.objects }
+    }
+
+    /// A tree for each shape that has instances, in the order of `instances`.
+    fn shared_trees(&self, builder: &mut Builder) -> Vec<(Option<u32>, Option<(Child, Aabb)>)> {
+        let mut trees: Vec<(Option<u32>, Option<(Child, Aabb)>)> = Vec::new();
+        for &(_, shape, _) in &self.instances {
+            if trees.iter().any(|(known, _)| *known == shape) {
+                continue;
+            }
+            let tree = match shape {
+                Some(mesh) => builder.triangles_of(std::iter::once((&self.meshes[mesh as usize], Id::NONE.object))),
+                None => builder.spheres_of(std::iter::once((Vec3::ZERO, 1.0, Id::NONE.object))),
+            };
+            trees.push((shape, tree));
+        }
+        trees
+    }
+}
+
+/// The vectors g with g_i · e_j = 1 where i = j and 0 elsewhere, in the plane of the edges.
+fn dual_basis([a, b]: [Vec3; 2]) -> [Vec3; 2] {
+    let n = a.cross(b);
+    let scale = 1.0 / n.length_squared();
+    if scale.is_finite() { [b.cross(n) * scale, n.cross(a) * scale] } else { [Vec3::ZERO; 2] }
+}
+
+/// Moves a mesh into world space.
+fn bake(mesh: &mut MeshShape, place: &Placement) {
+    if place.world_from_object == DMat4::IDENTITY {
+        return;
+    }
+    let back: Affine = place.object_from_world.into();
+    for point in &mut mesh.points {
+        *point = place.world_from_object.transform_point3(point.as_dvec3()).as_vec3();
+    }
+    if let PerVertex::Vertex(normals) | PerVertex::Corner(normals) = &mut mesh.normals {
+        normals.iter_mut().for_each(|n| *n = back.transposed(*n));
+    }
+}
+
+/// Trees in the making.
+#[derive(Default)]
+struct Builder {
+    nodes: Vec<Node>,
+    triangles: Vec<TriangleBlock>,
+    spheres: Vec<SphereBlock>,
+    instances: Vec<InstanceLeaf>,
+}
+
+impl Builder {
+    /// A tree over the triangles of some meshes, each with the object that its hits name.
+    fn triangles_of<'a>(&mut self, meshes: impl Iterator<Item = (&'a MeshShape, u32)>) -> Option<(Child, Aabb)> {
+        let meshes: Vec<_> = meshes.collect();
+        // Where each mesh's triangles start in the builder's numbering.
+        let mut starts = Vec::with_capacity(meshes.len());
+        let mut items = Vec::new();
+        let mut next = 0u32;
+        for (mesh, _) in &meshes {
+            starts.push(next);
+            for triangle in &mesh.triangles {
+                let bounds = Aabb::around(triangle.map(|i| mesh.points[i as usize]));
+                if bounds.is_finite() {
+                    items.push(Item { bounds, index: next });
+                }
+                next += 1;
+            }
+        }
+        let blocks = &mut self.triangles;
+        bvh::build(&mut items, 8, &mut self.nodes, &mut |items| {
+            let mut block = TriangleBlock::EMPTY;
+            for (lane, item) in items.iter().enumerate() {
+                let mesh = starts.partition_point(|&start| start <= item.index) - 1;
+                let index = item.index - starts[mesh];
+                let (mesh, object) = meshes[mesh];
+                for (vertex, &i) in mesh.triangles[index as usize].iter().enumerate() {
+                    for axis in 0..3 {
+                        block.vertices[vertex][axis][lane] = mesh.points[i as usize][axis];
+                    }
+                }
+                block.ids[lane] = Id { object, index };
+            }
+            blocks.push(block);
+            Child::leaf(Kind::Triangles, blocks.len() - 1)
+        })
+    }
+
+    /// A tree over spheres: centre, radius and the object that their hits name.
+    fn spheres_of(&mut self, spheres: impl Iterator<Item = (Vec3, f32, u32)>) -> Option<(Child, Aabb)> {
+        let spheres: Vec<_> = spheres.filter(|(center, radius, _)| center.is_finite() && radius.is_finite()).collect();
+        let mut items: Vec<Item> = spheres
+            .iter()
+            .enumerate()
+            .map(|(index, &(center, radius, _))| {
+                // Rounding may put a point of the sphere just outside the exact box.
+                let reach = Vec3::splat(radius * 1.000_001) + center.abs() * 1e-6;
+                Item { bounds: Aabb { min: center - reach, max: center + reach }, index: index as u32 }
+            })
+            .collect();
+        let blocks = &mut self.spheres;
+        bvh::build(&mut items, 8, &mut self.nodes, &mut |items| {
+            let mut block = SphereBlock::EMPTY;
+            for (lane, item) in items.iter().enumerate() {
+                let (center, radius, object) = spheres[item.index as usize];
+                for axis in 0..3 {
+                    block.centers[axis][lane] = center[axis];
+                }
+                block.radii[lane] = radius;
+                block.ids[lane] = Id { object, index: 0 };
+            }
+            blocks.push(block);
+            Child::leaf(Kind::Spheres, blocks.len() - 1)
+        })
+    }
+
+    /// A tree over instances.
+    fn instances_of(
+        &mut self,
+        instances: &[(u32, Option<u32>, DMat4)],
+        shared: &[(Option<u32>, Option<(Child, Aabb)>)],
+        objects: &[Object],
+    ) -> Option<(Child, Aabb)> {
+        let mut items = Vec::new();
+        let mut leaves = Vec::new();
+        for &(object, shape, world_from_object) in instances {
+            let tree = shared.iter().find(|(known, _)| *known == shape).and_then(|(_, tree)| *tree);
+            let Some((root, bounds)) = tree else { continue };
+            let corners = bounds.corners().map(|c| world_from_object.transform_point3(c.as_dvec3()).as_vec3());
+            let bounds = Aabb::around(corners);
+            if bounds.is_finite() {
+                items.push(Item { bounds, index: leaves.len() as u32 });
+                let object_from_world = objects[object as usize].object_from_world;
+                leaves.push(InstanceLeaf { root, object_from_world, object });
+            }
+        }
+        let tree = bvh::build(&mut items, 1, &mut self.nodes, &mut |items| {
+            Child::leaf(Kind::Instance, items[0].index as usize)
+        });
+        self.instances = leaves;
+        tree
+    }
+
+    /// One root for several trees.
+    fn join(&mut self, roots: &[(Child, Aabb)]) -> Child {
+        match roots {
+            [] => Child::NONE,
+            [(root, _)] => *root,
+            _ => {
+                let mut node = Node::EMPTY;
+                roots.iter().enumerate().for_each(|(slot, &(root, bounds))| node.set(slot, bounds, root));
+                self.nodes.push(node);
+                Child::node(self.nodes.len() - 1)
+            }
+        }
+    }
+}

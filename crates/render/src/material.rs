@@ -1,0 +1,196 @@
+//! What surfaces are made of: a colour from somewhere, and a response to light.
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+use jaspe_texture::{Space, Texture};
+
+use crate::options::Look;
+use crate::picture::{Picture, PicturePixels};
+use crate::{develop, math};
+
+/// The material of objects whose shader is missing: black, as in Sunflow.
+pub(crate) const BLACK: u32 = 0;
+
+/// Colour and response.
+#[derive(Debug, Clone)]
+pub(crate) struct Material {
+    pub albedo: Albedo,
+    pub response: Response,
+}
+
+impl Material {
+    /// See [`BLACK`].
+    pub fn black() -> Self {
+        Material { albedo: Albedo::Color(Vec3::ZERO), response: Response::Constant }
+    }
+}
+
+/// Where a surface's colour comes from.
+#[derive(Debug, Clone)]
+pub(crate) enum Albedo {
+    Color(Vec3),
+    Picture(Arc<PictureMap>),
+    Procedural(Box<Procedural>),
+}
+
+/// What a surface does with light. Colours are in the dialect's working space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Response {
+    /// Shines by itself (Sunflow), or matte (report).
+    Constant,
+    /// Matte.
+    Matte,
+    /// Matte with a glossy lobe.
+    Phong { specular: Vec3, power: f32, samples: u32 },
+    /// A mirror tinted by the albedo.
+    Mirror,
+    /// Clear glass tinted by the albedo; `absorption` per world unit.
+    Glass { eta: f32, absorption: Vec3 },
+    /// One of the six: matte, with a touch of reflection.
+    Procedural { reflection: f32, transmission: f32 },
+    /// A quick look.
+    Look(Look),
+}
+
+/// A procedural texture and how the renderer uses it.
+#[derive(Debug, Clone)]
+pub(crate) struct Procedural {
+    pub texture: Texture,
+    /// Turns the texture's display values into the dialect's working space.
+    pub decode: bool,
+}
+
+/// A batch of texture points, and room for what comes of it.
+#[derive(Debug, Default)]
+pub(crate) struct TextureBatch {
+    x: Vec<f32>,
+    y: Vec<f32>,
+    z: Vec<f32>,
+    colors: Vec<[f32; 3]>,
+}
+
+impl TextureBatch {
+    pub fn clear(&mut self) {
+        self.x.clear();
+        self.y.clear();
+        self.z.clear();
+    }
+
+    #[inline]
+    pub fn push(&mut self, p: Vec3) {
+        self.x.push(p.x);
+        self.y.push(p.y);
+        self.z.push(p.z);
+    }
+
+    /// Colours of all points, in the dialect's working space, appended to `out`.
+    pub fn evaluate(&mut self, procedural: &Procedural, out: &mut Vec<Vec3>) {
+        self.colors.clear();
+        self.colors.resize(self.x.len(), [0.0; 3]);
+        match procedural.texture.space() {
+            Space::Uv => procedural.texture.colors([&self.x, &self.y], &mut self.colors),
+            Space::Local | Space::World => procedural.texture.colors([&self.x, &self.y, &self.z], &mut self.colors),
+        }
+        if procedural.decode {
+            out.extend(self.colors.iter().map(|c| Vec3::from_array(c.map(decode_display))));
+        } else {
+            out.extend(self.colors.iter().map(|&c| Vec3::from_array(c)));
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+}
+
+/// Display value to linear light by a table of 4096 steps with linear interpolation; error below 1e-6.
+#[inline]
+fn decode_display(value: f32) -> f32 {
+    use std::sync::LazyLock;
+    const STEPS: usize = 4096;
+    static TABLE: LazyLock<Vec<f32>> =
+        LazyLock::new(|| (0..=STEPS + 1).map(|i| develop::srgb_decode(i as f64 / STEPS as f64) as f32).collect());
+    let at = value.clamp(0.0, 1.0) * STEPS as f32;
+    let i = at as usize;
+    let table = &*TABLE;
+    table[i] + (table[i + 1] - table[i]) * (at - i as f32)
+}
+
+/// A picture as a texture.
+#[derive(Debug)]
+pub(crate) struct PictureMap {
+    width: usize,
+    height: usize,
+    pixels: PicturePixels,
+    /// Display value of a byte in the dialect's working space.
+    decode: [f32; 256],
+}
+
+impl PictureMap {
+    /// For Sunflow's meaning: bytes are decoded to linear light, except in grayscale files, whose bytes Sunflow takes
+    /// as linear already.
+    pub fn linear(picture: Picture) -> Self {
+        let decode = |i: usize| {
+            let value = i as f64 / 255.0;
+            (if picture.grayscale { value } else { develop::srgb_decode(value) }) as f32
+        };
+        PictureMap::new(std::array::from_fn(decode), picture)
+    }
+
+    /// For the report's meaning: display values as they are.
+    pub fn display(picture: Picture) -> Self {
+        PictureMap::new(std::array::from_fn(|i| i as f32 / 255.0), picture)
+    }
+
+    fn new(decode: [f32; 256], picture: Picture) -> Self {
+        let (width, height) = (picture.width as usize, picture.height as usize);
+        PictureMap { width, height, pixels: picture.pixels, decode }
+    }
+
+    /// The pixel of a column and a row counted from the top.
+    fn texel(&self, column: usize, row: usize) -> Vec3 {
+        let at = row * self.width + column;
+        match &self.pixels {
+            PicturePixels::Bytes(bytes) => Vec3::from_array(bytes[at].map(|byte| self.decode[byte as usize])),
+            PicturePixels::Floats(floats) => Vec3::from_array(floats[at]),
+        }
+    }
+
+    /// Sunflow's look-up: v = 0 is the bottom edge, neighbours wrap, weights are eased (format reference, §3.12).
+    pub fn smooth(&self, uv: Vec2) -> Vec3 {
+        let axis = |t: f32, size: usize| {
+            let t = t - t.floor();
+            let at = if t.is_finite() { t * (size - 1) as f32 } else { 0.0 };
+            let low = (at as usize).min(size - 1);
+            let f = at - low as f32;
+            (low, (low + 1) % size, f * f * (3.0 - 2.0 * f))
+        };
+        let (x0, x1, fx) = axis(uv.x, self.width);
+        let (y0, y1, fy) = axis(uv.y, self.height);
+        let row = |y: usize| {
+            let y = self.height - 1 - y;
+            self.texel(x0, y).lerp(self.texel(x1, y), fx)
+        };
+        row(y0).lerp(row(y1), fy)
+    }
+
+    /// The report's look-up: the nearest pixel, v = 0 at the top, coordinates from 0 to 1.
+    pub fn nearest(&self, uv: Vec2) -> Vec3 {
+        let axis = |t: f32, size: usize| ((t * size as f32).max(0.0) as usize).min(size - 1);
+        self.texel(axis(uv.x, self.width), axis(uv.y, self.height))
+    }
+}
+
+/// Schlick's approximation of a mirror's reflectance; `color` is what it reflects head-on.
+pub(crate) fn schlick(color: Vec3, cosine: f32) -> Vec3 {
+    let rest = 1.0 - cosine;
+    let rest2 = rest * rest;
+    color + (Vec3::ONE - color) * (rest2 * rest2 * rest)
+}
+
+/// What is left of the light after `length` world units of absorbing glass.
+pub(crate) fn transmittance(absorption: Vec3, length: f32) -> Vec3 {
+    let along = |a: f32| if a == 0.0 { 1.0 } else { math::exp(-f64::from(a * length)) as f32 };
+    Vec3::new(along(absorption.x), along(absorption.y), along(absorption.z))
+}

@@ -1,0 +1,189 @@
+//! Numbers that must agree on every platform: no platform trigonometry, no fused multiply-add.
+
+use glam::Vec3;
+
+/// Sine and cosine of an angle in degrees; exact at multiples of 90°.
+pub(crate) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+    let quarter = (degrees / 90.0).round();
+    let rest = (degrees - quarter * 90.0).to_radians();
+    // Taylor series on ±π/4: the first term left out is below 1e-17.
+    let x2 = rest * rest;
+    let sin_terms = [
+        1.0,
+        -1.0 / 6.0,
+        1.0 / 120.0,
+        -1.0 / 5040.0,
+        1.0 / 362_880.0,
+        -1.0 / 39_916_800.0,
+        1.0 / 6_227_020_800.0,
+        -1.0 / 1_307_674_368_000.0,
+    ];
+    let cos_terms = [
+        1.0,
+        -0.5,
+        1.0 / 24.0,
+        -1.0 / 720.0,
+        1.0 / 40_320.0,
+        -1.0 / 3_628_800.0,
+        1.0 / 479_001_600.0,
+        -1.0 / 87_178_291_200.0,
+    ];
+    let series = |terms: [f64; 8]| terms.iter().rev().fold(0.0, |sum, term| sum * x2 + term);
+    let (sin, cos) = (rest * series(sin_terms), series(cos_terms));
+    match (quarter.rem_euclid(4.0)) as u8 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// Arctangent of y/x in the right quadrant, -π to π; error below 3e-7.
+pub(crate) fn atan2(y: f32, x: f32) -> f32 {
+    let (ax, ay) = (f64::from(x.abs()), f64::from(y.abs()));
+    if ax == 0.0 && ay == 0.0 {
+        return 0.0;
+    }
+    let steep = ay > ax;
+    let angle = atan_unit(if steep { ax / ay } else { ay / ax });
+    let angle = if steep { std::f64::consts::FRAC_PI_2 - angle } else { angle };
+    let angle = if x.is_sign_negative() { std::f64::consts::PI - angle } else { angle };
+    (if y.is_sign_negative() { -angle } else { angle }) as f32
+}
+
+/// Arctangent on 0 to 1: half the angle twice (tan(θ/2) = t / (1 + √(1 + t²))), then the series.
+fn atan_unit(t: f64) -> f64 {
+    let half = |t: f64| t / (1.0 + (1.0 + t * t).sqrt());
+    let t = half(half(t));
+    let t2 = t * t;
+    // |t| ≤ tan(π/16) ≈ 0.199: the first term left out is below 1e-13.
+    let series = (0..8).rev().fold(0.0, |sum, k| {
+        let term = 1.0 / f64::from(2 * k + 1);
+        sum * t2 + if k % 2 == 0 { term } else { -term }
+    });
+    4.0 * t * series
+}
+
+/// Arccosine, 0 to π, of a number from -1 to 1; error below 3e-7.
+pub(crate) fn acos(x: f32) -> f32 {
+    atan2((1.0 - f64::from(x) * f64::from(x)).max(0.0).sqrt() as f32, x)
+}
+
+/// Tangent of an angle in radians within ±π/2.
+pub(crate) fn tan_degrees(degrees: f64) -> f64 {
+    let (sin, cos) = sin_cos_degrees(degrees);
+    sin / cos
+}
+
+/// The unit normal (b-a)×(c-a), also of triangles so small that its square underflows.
+pub(crate) fn unit_normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
+    let (ab, ac) = (b - a, c - a);
+    let n = ab.cross(ac);
+    if n.length_squared() > 1e-30 {
+        return n.normalize();
+    }
+    ab.as_dvec3().cross(ac.as_dvec3()).normalize_or(glam::DVec3::Z).as_vec3()
+}
+
+/// A vector of unit length at a right angle to `w`, and the third one: (u, v) with w = u × v
+/// ([Duff et al. 2017] "Building an Orthonormal Basis, Revisited").
+pub(crate) fn basis(w: Vec3) -> (Vec3, Vec3) {
+    let sign = 1.0f32.copysign(w.z);
+    let a = -1.0 / (sign + w.z);
+    let b = w.x * w.y * a;
+    (Vec3::new(1.0 + sign * w.x * w.x * a, sign * b, -sign * w.x), Vec3::new(b, sign + w.y * w.y * a, -w.y))
+}
+
+/// `point`, moved off its surface along `side` by a few units in the last place of its coordinates, so that a ray
+/// from there does not meet the surface again ([Wächter, Binder 2019] "A Fast and Robust Method for Avoiding
+/// Self-Intersection", Ray Tracing Gems, ch. 6).
+pub(crate) fn offset(point: Vec3, side: Vec3) -> Vec3 {
+    let shift = |p: f32, n: f32| {
+        if p.abs() < 1.0 / 32.0 {
+            return p + n / 65536.0;
+        }
+        let step = (n * 256.0) as i32;
+        let bits = p.to_bits() as i32;
+        f32::from_bits(if p < 0.0 { bits - step } else { bits + step } as u32)
+    };
+    Vec3::new(shift(point.x, side.x), shift(point.y, side.y), shift(point.z, side.z))
+}
+
+/// e to the power of x; relative error below 1e-15.
+pub(crate) fn exp(x: f64) -> f64 {
+    let x = x.clamp(-708.0, 709.0);
+    let k = (x * std::f64::consts::LOG2_E).round();
+    // ln 2 in two parts, the first with so few bits that its product with k is exact.
+    let r = (x - k * 0.693_147_180_369_123_8) - k * 1.908_214_929_270_587_7e-10;
+    // |r| ≤ ln 2 / 2: the first term left out is below 1e-17.
+    let series = (1..=13).rev().fold(1.0, |sum, n| 1.0 + sum * r / f64::from(n));
+    series * f64::from_bits(((k as i64 + 1023) as u64) << 52)
+}
+
+/// The natural logarithm of a positive, normal number; error below 1e-15 or relative 1e-15.
+pub(crate) fn ln(x: f64) -> f64 {
+    let bits = x.to_bits();
+    let mut exponent = (bits >> 52) as i64 - 1023;
+    let mut mantissa = f64::from_bits(bits & 0x000f_ffff_ffff_ffff | 0x3ff0_0000_0000_0000);
+    if mantissa > std::f64::consts::SQRT_2 {
+        mantissa *= 0.5;
+        exponent += 1;
+    }
+    // ln m = 2 artanh s; |s| ≤ 0.172, so that the first term left out is below 1e-17.
+    let s = (mantissa - 1.0) / (mantissa + 1.0);
+    let s2 = s * s;
+    let series = (0..11).rev().fold(0.0, |sum, n| sum * s2 + 1.0 / f64::from(2 * n + 1));
+    2.0 * s * series + exponent as f64 * std::f64::consts::LN_2
+}
+
+/// `base` to the power of `exponent`, for a base from 0 to 1 and any exponent of 0 or more.
+pub(crate) fn pow(base: f32, exponent: f32) -> f32 {
+    if exponent == 0.0 {
+        return 1.0;
+    }
+    if base < f32::MIN_POSITIVE {
+        return 0.0;
+    }
+    exp(f64::from(exponent) * ln(f64::from(base))) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn trigonometry_is_exact_at_quarter_turns_and_close_elsewhere() {
+        assert_eq!(sin_cos_degrees(90.0), (1.0, 0.0));
+        assert_eq!(sin_cos_degrees(-180.0), (0.0, -1.0));
+        assert_eq!(sin_cos_degrees(270.0), (-1.0, 0.0));
+        for i in -2000..2000 {
+            let angle = f64::from(i) * 0.37;
+            let (sin, cos) = sin_cos_degrees(angle);
+            let (s, c) = angle.to_radians().sin_cos();
+            assert!((sin - s).abs() < 1e-14 && (cos - c).abs() < 1e-14, "{angle}");
+            let (y, x) = (s as f32, c as f32);
+            assert!((atan2(y, x) - y.atan2(x)).abs() < 5e-7, "{angle}");
+            assert!((acos(x) - x.acos()).abs() < 1e-6, "{angle}: {} {}", acos(x), x.acos());
+        }
+    }
+
+    #[test]
+    fn exponentials_and_logarithms_are_close() {
+        for i in -300..300 {
+            let x = f64::from(i) * 0.21;
+            assert!((exp(x) / x.exp() - 1.0).abs() < 2e-15, "{x}");
+            assert!((ln(x.exp()) - x).abs() < 1e-14 * x.abs().max(1.0), "{x}");
+        }
+        assert!((pow(0.93, 50.0) - 0.93f32.powf(50.0)).abs() < 1e-7);
+        assert_eq!(pow(0.0, 50.0), 0.0);
+        assert_eq!(pow(0.5, 0.0), 1.0);
+    }
+
+    #[test]
+    fn a_basis_is_orthonormal_and_right_handed() {
+        for w in [Vec3::X, Vec3::NEG_Z, Vec3::new(0.6, -0.64, 0.48), Vec3::Z] {
+            let (u, v) = basis(w);
+            assert!((u.cross(v) - w).length() < 1e-6, "{w}");
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Random numbers that depend on pixel, sample and dimension alone: the same bits for any order of the work.
+//!
+//! Two-dimensional Sobol' points, shuffled and Owen-scrambled per pixel and dimension by hashing ([Burley 2020]
+//! "Practical Hash-based Owen Scrambling"; the hash is Vegdahl's improvement of Laine and Karras's).
+
+/// Where in the sample space a path stands: its pixel and its sample.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SampleKey {
+    /// Hash of the pixel and the seed.
+    pub pixel: u32,
+    /// Index of the sample within the pixel.
+    pub index: u32,
+}
+
+impl SampleKey {
+    /// The key of sample `index` of a pixel.
+    pub fn new(x: u32, y: u32, index: u32, seed: u64) -> Self {
+        let seed = hash(seed as u32 ^ hash((seed >> 32) as u32));
+        SampleKey { pixel: hash(x ^ hash(y ^ seed)), index }
+    }
+
+    /// The pair of dimensions `dimension`, each in [0, 1).
+    #[inline]
+    pub fn pair(&self, dimension: u32) -> [f32; 2] {
+        sobol_pair(hash(self.pixel ^ hash(dimension.wrapping_mul(0x9e37_79b9))), self.index)
+    }
+
+    /// Two independent uniform numbers in [0, 1), without stratification.
+    #[inline]
+    pub fn random_pair(&self, dimension: u32) -> [f32; 2] {
+        let a = hash(self.pixel ^ hash(self.index ^ hash(dimension)));
+        [unit(a), unit(hash(a ^ 0x68bc_21eb))]
+    }
+}
+
+/// Point `index` of the scrambled sequence `seed`.
+#[inline]
+fn sobol_pair(seed: u32, index: u32) -> [f32; 2] {
+    // Scrambling the index keeps aligned blocks of it together, so that 4^k samples stay stratified.
+    let index = owen(index, seed);
+    // The first dimension is the van der Corput sequence: the bits of the index, reversed.
+    let x = owen(index.reverse_bits(), hash(seed ^ 0x79b9_30f5));
+    let y = owen(sobol_second(index), hash(seed ^ 0x2c1b_3c6d));
+    [unit(x), unit(y)]
+}
+
+/// The second dimension of the Sobol' sequence: its generator matrix is Pascal's triangle modulo 2, where entry (j, k)
+/// is one if the bits of j are among those of k (Lucas), so that one step per bit of the position builds it up.
+#[inline]
+fn sobol_second(index: u32) -> u32 {
+    let mut v = index.reverse_bits();
+    v ^= (v & 0x5555_5555) << 1;
+    v ^= (v & 0x3333_3333) << 2;
+    v ^= (v & 0x0f0f_0f0f) << 4;
+    v ^= (v & 0x00ff_00ff) << 8;
+    v ^ (v & 0x0000_ffff) << 16
+}
+
+/// Owen scrambling of a binary fraction: every bit is flipped by a hash of those above it.
+#[inline]
+fn owen(fraction: u32, seed: u32) -> u32 {
+    let mut v = fraction.reverse_bits();
+    v ^= v.wrapping_mul(0x3d20_adea);
+    v = v.wrapping_add(seed);
+    v = v.wrapping_mul((seed >> 16) | 1);
+    v ^= v.wrapping_mul(0x0552_6c56);
+    v ^= v.wrapping_mul(0x53a2_2864);
+    v.reverse_bits()
+}
+
+/// A 32-bit mixer of low bias (`lowbias32` of [Wellons 2018] "Prospecting for Hash Functions").
+#[inline]
+pub(crate) fn hash(mut v: u32) -> u32 {
+    v ^= v >> 16;
+    v = v.wrapping_mul(0x7feb_352d);
+    v ^= v >> 15;
+    v = v.wrapping_mul(0x846c_a68b);
+    v ^ v >> 16
+}
+
+/// The top 24 bits as a number in [0, 1).
+#[inline]
+fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 / 16_777_216.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_power_of_four_samples_is_stratified() {
+        for pixel in 0..50 {
+            let key = |index| SampleKey::new(pixel, 3 * pixel, index, 7);
+            for level in 1..=4u32 {
+                let n = 1 << level;
+                let mut cells = vec![0; (n * n) as usize];
+                for index in 0..n * n {
+                    let [x, y] = key(index).pair(5);
+                    assert!((0.0..1.0).contains(&x) && (0.0..1.0).contains(&y));
+                    cells[(y * n as f32) as usize * n as usize + (x * n as f32) as usize] += 1;
+                }
+                assert!(cells.iter().all(|&count| count == 1), "pixel {pixel}, {n} × {n}: {cells:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn pixels_dimensions_and_seeds_are_independent() {
+        let mean = |f: &dyn Fn(u32) -> f32| (0..4096).map(f).sum::<f32>() / 4096.0;
+        assert!((mean(&|x| SampleKey::new(x, 0, 0, 0).pair(0)[0]) - 0.5).abs() < 0.02);
+        assert!((mean(&|d| SampleKey::new(3, 4, 0, 0).pair(d)[1]) - 0.5).abs() < 0.02);
+        assert!((mean(&|s| SampleKey::new(3, 4, 0, u64::from(s) << 32).random_pair(0)[1]) - 0.5).abs() < 0.02);
+    }
+}

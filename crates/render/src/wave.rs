@@ -1,0 +1,328 @@
+//! Rendering in waves: the rays of a tile as one batch, hits sorted by material, one texture evaluation per material
+//! and wave, shadow and secondary rays queued for the next wave, until the queues are empty.
+//!
+//! Light travels back through *nodes*. Every camera sample has one; where a dialect combines what its secondary rays
+//! bring in a way that is not a plain sum, every ray has one, with a parent. Nodes are resolved last to first, which
+//! visits children before their parents.
+
+use glam::Vec3;
+
+use crate::compile::CompiledScene;
+use crate::geometry::{Geometry, Hit, Id, Ray, Scratch};
+use crate::material::TextureBatch;
+use crate::options::Stats;
+use crate::sampler::SampleKey;
+
+/// How a ray came to be; decides what it sees and how it counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RayKind {
+    Camera,
+    Reflection,
+    /// A ray into a glossy lobe: sees neither mirrors nor glass behind it.
+    Glossy,
+    Refraction,
+}
+
+/// How often a path has bounced.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Depth {
+    pub diffuse: u8,
+    pub reflection: u8,
+    pub refraction: u8,
+}
+
+impl Depth {
+    pub fn total(self) -> u32 {
+        u32::from(self.diffuse) + u32::from(self.reflection) + u32::from(self.refraction)
+    }
+
+    pub fn reflected(self) -> Depth {
+        Depth { reflection: self.reflection.saturating_add(1), ..self }
+    }
+
+    pub fn refracted(self) -> Depth {
+        Depth { refraction: self.refraction.saturating_add(1), ..self }
+    }
+}
+
+/// A ray that looks for a surface, and what its light counts where.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PathRay {
+    pub ray: Ray,
+    pub weight: Vec3,
+    pub node: u32,
+    pub key: SampleKey,
+    pub kind: RayKind,
+    pub depth: Depth,
+}
+
+/// A ray towards a light, and what arrives if nothing is in the way.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ShadowRay {
+    pub ray: Ray,
+    pub contribution: Vec3,
+    pub node: u32,
+}
+
+impl AsRef<Ray> for PathRay {
+    fn as_ref(&self) -> &Ray {
+        &self.ray
+    }
+}
+
+impl AsRef<Ray> for ShadowRay {
+    fn as_ref(&self) -> &Ray {
+        &self.ray
+    }
+}
+
+/// Where light is gathered.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Node {
+    /// Light from lights, and from surfaces that shine.
+    pub direct: Vec3,
+    /// Light from child nodes, weighted.
+    pub indirect: Vec3,
+    /// The node that gets this one's light, and how much of it; itself for roots.
+    pub parent: u32,
+    pub weight: f32,
+    /// What the sum is multiplied by; zero where the ray met nothing.
+    pub gain: f32,
+}
+
+impl Node {
+    /// The node of camera sample `index`.
+    fn root(index: u32) -> Node {
+        Node { direct: Vec3::ZERO, indirect: Vec3::ZERO, parent: index, weight: 1.0, gain: 0.0 }
+    }
+}
+
+/// What the camera sees at one sample, for deciding where more samples are needed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seen {
+    pub object: u32,
+    pub normal: Vec3,
+}
+
+impl Seen {
+    pub const NOTHING: Seen = Seen { object: Id::NONE.object, normal: Vec3::ZERO };
+}
+
+/// A camera sample that is to be traced.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CameraSample {
+    /// The ray, unless the lens sees nothing there.
+    pub ray: Option<(Vec3, Vec3)>,
+    pub key: SampleKey,
+}
+
+/// What comes of a camera sample.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SampleResult {
+    pub color: Vec3,
+    /// 1 where anything was seen, background included.
+    pub coverage: f32,
+    pub seen: Seen,
+}
+
+/// Everything that shading leaves behind for the rest of the wave and the next one.
+#[derive(Debug, Default)]
+pub(crate) struct Queues {
+    pub rays: Vec<PathRay>,
+    pub shadows: Vec<ShadowRay>,
+    pub nodes: Vec<Node>,
+    pub seen: Vec<Seen>,
+    pub stats: Stats,
+}
+
+/// The hits of one wave that share a material.
+pub(crate) struct Batch<'a> {
+    pub scene: &'a CompiledScene,
+    pub material: u32,
+    /// Positions in `rays` and `hits`.
+    pub members: &'a [u32],
+    pub rays: &'a [PathRay],
+    pub hits: &'a [Hit],
+}
+
+impl<'a> Batch<'a> {
+    /// The members with their rays and hits.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&'a PathRay, &'a Hit)> + use<'a> {
+        let (rays, hits) = (self.rays, self.hits);
+        self.members.iter().map(move |&i| (&rays[i as usize], &hits[i as usize]))
+    }
+
+    pub fn geometry(&self) -> &'a Geometry {
+        &self.scene.geometry
+    }
+}
+
+/// What a dialect does with hits, misses and gathered light.
+pub(crate) trait Rules: Sync {
+    /// Shades a batch: adds light to nodes, queues shadow and secondary rays.
+    fn shade(&self, batch: &Batch<'_>, textures: &mut TextureBatch, colors: &mut Vec<Vec3>, queues: &mut Queues);
+
+    /// Light along a ray that met nothing, and whether the camera takes it for a surface.
+    fn miss(&self, scene: &CompiledScene, ray: &PathRay) -> Option<Vec3>;
+
+    /// The light of a node whose children are complete.
+    fn finish(&self, node: &Node) -> Vec3;
+
+    /// The smallest distance of a hit.
+    fn t_min(&self) -> f32;
+}
+
+/// One thread's room for waves, used again and again.
+#[derive(Default)]
+pub(crate) struct Workspace {
+    rays: Vec<PathRay>,
+    hits: Vec<Hit>,
+    blocked: Vec<bool>,
+    /// Positions of hits, sorted by material, and where each material starts.
+    sorted: Vec<u32>,
+    starts: Vec<u32>,
+    materials: Vec<u32>,
+    textures: TextureBatch,
+    colors: Vec<Vec3>,
+    scratch: Scratch,
+    pub queues: Queues,
+}
+
+/// Marks a miss among the materials of a wave.
+const MISS: u32 = u32::MAX;
+
+impl Workspace {
+    /// Traces camera samples to their end; `results` gets one entry each, in order.
+    pub fn trace<R: Rules>(
+        &mut self,
+        scene: &CompiledScene,
+        rules: &R,
+        samples: &[CameraSample],
+        results: &mut Vec<SampleResult>,
+    ) {
+        self.start(rules, samples);
+        let mut coverage = vec![0.0; samples.len()];
+        let mut first = true;
+        while !self.queues.rays.is_empty() {
+            std::mem::swap(&mut self.rays, &mut self.queues.rays);
+            self.queues.rays.clear();
+            self.count_rays();
+            scene.geometry.closest(&self.rays, &mut self.hits, &mut self.scratch);
+            self.sort_by_material(scene);
+            for (i, ray) in self.rays.iter().enumerate() {
+                if self.materials[i] != MISS {
+                    if first {
+                        coverage[ray.node as usize] = 1.0;
+                    }
+                } else if let Some(light) = rules.miss(scene, ray) {
+                    self.queues.nodes[ray.node as usize].direct += ray.weight * light;
+                    if first {
+                        coverage[ray.node as usize] = 1.0;
+                    }
+                }
+            }
+            self.shade(scene, rules);
+            self.light(scene);
+            first = false;
+        }
+        self.resolve(rules, &coverage, results);
+    }
+
+    /// Queues the camera rays.
+    fn start<R: Rules>(&mut self, rules: &R, samples: &[CameraSample]) {
+        let queues = &mut self.queues;
+        queues.rays.clear();
+        queues.shadows.clear();
+        queues.nodes.clear();
+        queues.nodes.extend((0..samples.len() as u32).map(Node::root));
+        queues.seen.clear();
+        queues.seen.resize(samples.len(), Seen::NOTHING);
+        queues.stats.samples += samples.len() as u64;
+        queues.rays.extend(samples.iter().enumerate().filter_map(|(node, sample)| {
+            let (origin, direction) = sample.ray?;
+            let ray = Ray { origin, direction, t_min: rules.t_min(), t_max: f32::INFINITY, skip: Id::NONE };
+            let (kind, depth) = (RayKind::Camera, Depth::default());
+            Some(PathRay { ray, weight: Vec3::ONE, node: node as u32, key: sample.key, kind, depth })
+        }));
+    }
+
+    fn count_rays(&mut self) {
+        let stats = &mut self.queues.stats;
+        for ray in &self.rays {
+            match ray.kind {
+                RayKind::Camera => stats.camera_rays += 1,
+                RayKind::Reflection | RayKind::Glossy => stats.reflection_rays += 1,
+                RayKind::Refraction => stats.refraction_rays += 1,
+            }
+        }
+    }
+
+    /// Counting sort of the hits by material; misses are left out.
+    fn sort_by_material(&mut self, scene: &CompiledScene) {
+        let count = scene.materials.len();
+        self.starts.clear();
+        self.starts.resize(count + 1, 0);
+        self.materials.clear();
+        for hit in &self.hits {
+            let material = if hit.id == Id::NONE { MISS } else { scene.geometry.material(hit) };
+            self.materials.push(material);
+            if material != MISS {
+                self.starts[material as usize + 1] += 1;
+            }
+        }
+        for material in 0..count {
+            self.starts[material + 1] += self.starts[material];
+        }
+        let mut next = self.starts.clone();
+        self.sorted.clear();
+        self.sorted.resize(self.starts[count] as usize, 0);
+        for (i, &material) in self.materials.iter().enumerate() {
+            if material != MISS {
+                let at = &mut next[material as usize];
+                self.sorted[*at as usize] = i as u32;
+                *at += 1;
+            }
+        }
+    }
+
+    fn shade<R: Rules>(&mut self, scene: &CompiledScene, rules: &R) {
+        for material in 0..scene.materials.len() {
+            let range = self.starts[material] as usize..self.starts[material + 1] as usize;
+            if range.is_empty() {
+                continue;
+            }
+            let members = &self.sorted[range];
+            let batch = Batch { scene, material: material as u32, members, rays: &self.rays, hits: &self.hits };
+            self.colors.clear();
+            rules.shade(&batch, &mut self.textures, &mut self.colors, &mut self.queues);
+        }
+    }
+
+    /// Traces the shadow rays and hands out what arrives.
+    fn light(&mut self, scene: &CompiledScene) {
+        let queues = &mut self.queues;
+        queues.stats.shadow_rays += queues.shadows.len() as u64;
+        scene.geometry.occluded(&queues.shadows, &mut self.blocked, &mut self.scratch);
+        for (shadow, &blocked) in queues.shadows.iter().zip(&self.blocked) {
+            if !blocked {
+                queues.nodes[shadow.node as usize].direct += shadow.contribution;
+            }
+        }
+        queues.shadows.clear();
+    }
+
+    /// Hands light from children to parents, and from roots to the results.
+    fn resolve<R: Rules>(&mut self, rules: &R, coverage: &[f32], results: &mut Vec<SampleResult>) {
+        let nodes = &mut self.queues.nodes;
+        for i in (coverage.len()..nodes.len()).rev() {
+            let node = nodes[i];
+            nodes[node.parent as usize].indirect += node.weight * rules.finish(&node);
+        }
+        results.clear();
+        results.extend((0..coverage.len()).map(|i| SampleResult {
+            color: rules.finish(&nodes[i]),
+            coverage: coverage[i],
+            seen: self.queues.seen[i],
+        }));
+    }
+}
