@@ -1,0 +1,8 @@
+//! The commands, one file each: their arguments, help texts and what they do.
+
+pub mod check;
+pub mod compare;
+pub mod noise;
+pub mod render;
+pub mod texture;
+pub mod textures;

@@ -1,0 +1,238 @@
+//! `jaspe render`.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use clap::{Args, ValueEnum};
+use jaspe_render::{CompileOptions, CompiledScene, Film, RenderOptions, Stats, render};
+use jaspe_scene::Severity;
+use serde_json::json;
+
+use crate::Outcome;
+use crate::arguments::{DialectName, LookName, crop, size};
+use crate::failure::Failure;
+use crate::format_number::{duration, size as file_size};
+use crate::output::Output;
+use crate::progress::{Progress, When};
+use crate::scene_file::{self, Loaded};
+use crate::stats::{Rays, Report, Times, peak_rss_bytes};
+use crate::{interrupt, report, terminal};
+
+/// Render a scene to a picture file.
+///
+/// The extension of the output chooses its format: .png (8 or 16 bits), .jpg, .tiff and .bmp are encoded for display,
+/// .exr and .hdr hold linear light. The file appears whole or not at all. Ctrl-C stops and leaves nothing behind.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  jaspe render scene.sc                                  writes scene.png here
+  jaspe render scene.sc -o /tmp/big.exr --resolution 3840x2160
+  jaspe render scene.sc --samples 4 --show               a quick look in the terminal
+  jaspe render scene.sc --override normals               what the surfaces look like
+  jaspe render scene.sc --set floor.depth=3 --set floor.scale=2.5
+  jaspe render old.sc --dialect report --resolution 640x480 --aa 0 0
+  jaspe render scene.sc --quiet --stats json | jq .render_s")]
+pub struct Render {
+    /// The scene
+    #[arg(value_name = "SCENE.sc")]
+    scene: PathBuf,
+
+    /// The picture [default: the scene's name with .png, in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+
+    /// Size of the picture in pixels, in place of the scene's own
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    resolution: Option<[u32; 2]>,
+
+    /// Exactly N samples per pixel, without adaptation
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), conflicts_with = "aa")]
+    samples: Option<u32>,
+
+    /// Adaptive antialiasing in place of the scene's own: 2^MIN to 2^MAX samples along each edge of a pixel
+    #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], allow_negative_numbers = true,
+        value_parser = clap::value_parser!(i32).range(-8..=8))]
+    aa: Option<Vec<i32>>,
+
+    /// Threads that work [default: all that the machine has]; the picture does not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    threads: Option<u32>,
+
+    /// Another seed gives other sampling noise
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+
+    /// Render only this part: pixels from the top left, the ends excluded
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = crop)]
+    crop: Option<[u32; 4]>,
+
+    /// Whose meaning the scene's words have [default: what the scene says, else sunflow]
+    #[arg(long, value_enum, value_name = "DIALECT")]
+    dialect: Option<DialectName>,
+
+    /// A quick look in place of every shader
+    #[arg(long = "override", value_enum, value_name = "LOOK")]
+    look: Option<LookName>,
+
+    /// Change a parameter of a named shader, such as floor.depth=3; may be repeated
+    #[arg(long, value_name = "NAME.KEY=VALUE")]
+    set: Vec<String>,
+
+    /// Print how long each stage took
+    #[arg(long)]
+    time: bool,
+
+    /// Print what the rendering cost on standard output
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    stats: Option<StatsFormat>,
+
+    /// When to show progress
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t = When::Auto)]
+    progress: When,
+
+    /// Print errors only
+    #[arg(short, long)]
+    quiet: bool,
+
+    /// Draw the picture in the terminal too
+    #[arg(long)]
+    show: bool,
+
+    /// Bits per sample of a PNG or TIFF [default: 8]
+    #[arg(long, value_name = "8|16", value_parser = bits)]
+    bits: Option<u8>,
+}
+
+/// How `--stats` prints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum StatsFormat {
+    /// One JSON object
+    Json,
+}
+
+fn bits(text: &str) -> Result<u8, String> {
+    match text {
+        "8" => Ok(8),
+        "16" => Ok(16),
+        _ => Err("expected 8 or 16".to_owned()),
+    }
+}
+
+impl Render {
+    /// Renders and writes the picture.
+    pub fn run(self) -> Result<Outcome, Failure> {
+        let started = Instant::now();
+        let path = self.output.clone().unwrap_or_else(|| default_output(&self.scene));
+        let output = Output::new(&path, self.bits)?;
+        interrupt::listen();
+
+        let loaded = scene_file::load(&self.scene, &self.set, &self.compile_options())?;
+        self.print_diagnostics(&loaded);
+        let Some(scene) = &loaded.scene else {
+            eprintln!("{}: {}; nothing was rendered", self.scene.display(), report::summary(&loaded.diagnostics));
+            return Ok(Outcome::Found);
+        };
+        self.check_crop(scene)?;
+
+        let rendering = Instant::now();
+        let (film, stats) = self.render(scene)?;
+        let render_time = rendering.elapsed();
+        let writing = Instant::now();
+        let byte_count = output.write(&film)?;
+        let times =
+            Times { parse: loaded.parse_time, build: loaded.build_time, render: render_time, write: writing.elapsed() };
+        let total = started.elapsed();
+
+        if self.show {
+            terminal::show(&film);
+        }
+        if self.time {
+            eprintln!("{}", times.line());
+        }
+        if !self.quiet {
+            let size = file_size(byte_count);
+            let (path, total) = (output.path().display(), duration(total));
+            eprintln!("{path}: {}x{}, {size}, in {total}", film.width, film.height);
+        }
+        if self.stats.is_some() {
+            let warnings = loaded.diagnostics.count(Severity::Warning);
+            writeln!(std::io::stdout(), "{:#}", json!(self.report(&film, &stats, &times, total, warnings)))?;
+        }
+        Ok(Outcome::Done)
+    }
+
+    fn compile_options(&self) -> CompileOptions {
+        CompileOptions {
+            dialect: self.dialect.map(Into::into),
+            resolution: self.resolution,
+            samples: self.samples,
+            aa: self.aa.as_deref().and_then(|range| range.try_into().ok()),
+            look: self.look.map(Into::into),
+        }
+    }
+
+    fn print_diagnostics(&self, loaded: &Loaded) {
+        let least = if self.quiet { Severity::Error } else { Severity::Note };
+        anstream::eprint!("{}", report::text(&loaded.diagnostics, &loaded.sources, least));
+    }
+
+    fn check_crop(&self, scene: &CompiledScene) -> Result<(), Failure> {
+        let [width, height] = scene.resolution();
+        match self.crop {
+            Some([_, _, x1, y1]) if x1 > width || y1 > height => {
+                let message = format!("--crop reaches {x1},{y1}, but the picture ends at {width},{height}");
+                Err(Failure::new(message)
+                    .hint("--crop takes X0,Y0,X1,Y1 in pixels from the top left, the ends excluded"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn render(&self, scene: &CompiledScene) -> Result<(Film, Stats), Failure> {
+        let options =
+            RenderOptions { threads: self.threads.map(|threads| threads as usize), seed: self.seed, crop: self.crop };
+        let progress = Progress::new(if self.quiet { When::Off } else { self.progress });
+        let result = render(scene, &options, &progress);
+        progress.finish();
+        result.map_err(|_| {
+            eprintln!("stopped; nothing was written");
+            Failure::Interrupted
+        })
+    }
+
+    fn report(&self, film: &Film, stats: &Stats, times: &Times, total: Duration, warnings: usize) -> Report {
+        Report {
+            parse_s: times.parse.as_secs_f64(),
+            build_s: times.build.as_secs_f64(),
+            render_s: times.render.as_secs_f64(),
+            total_s: total.as_secs_f64(),
+            width: film.width,
+            height: film.height,
+            samples: stats.samples,
+            rays: Rays::from(stats),
+            texture_points: stats.texture_points,
+            threads: stats.threads,
+            simd: jaspe_noise::simd::level().name().to_owned(),
+            peak_rss_bytes: peak_rss_bytes(),
+            warnings,
+        }
+    }
+}
+
+/// The scene's name with `.png`, in the current folder.
+fn default_output(scene: &Path) -> PathBuf {
+    let mut name = scene.file_stem().unwrap_or_default().to_owned();
+    name.push(".png");
+    PathBuf::from(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_output_is_beside_the_reader() {
+        assert_eq!(default_output(Path::new("scenes/six.materials.sc")), Path::new("six.materials.png"));
+    }
+}
