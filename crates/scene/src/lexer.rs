@@ -74,6 +74,10 @@ pub(crate) struct Lexer {
     position: usize,
     quoted: bool,
     classes: &'static [Class; 256],
+    /// The last quote that was opened.
+    quote: u32,
+    /// The first quote that its line does not close.
+    pub unclosed_quote: Option<u32>,
     /// Start of a block comment that the file never closes.
     pub unclosed_comment: Option<u32>,
 }
@@ -91,7 +95,7 @@ impl Lexer {
             Syntax::Scene => &SCENE,
             Syntax::Assignment => &ASSIGNMENT,
         };
-        Lexer { position, quoted: false, classes, unclosed_comment: None }
+        Lexer { position, quoted: false, classes, quote: 0, unclosed_quote: None, unclosed_comment: None }
     }
 
     /// One past the last byte that was read.
@@ -125,10 +129,14 @@ impl Lexer {
                 Class::Space if self.quoted => break,
                 Class::Space => self.position += 1,
                 Class::Newline => {
-                    self.quoted = false;
+                    if self.quoted {
+                        self.unclosed_quote.get_or_insert(self.quote);
+                        self.quoted = false;
+                    }
                     self.position += 1;
                 }
                 Class::Quote => {
+                    self.quote = self.position as u32;
                     self.quoted = !self.quoted;
                     self.position += 1;
                 }

@@ -71,6 +71,8 @@ pub(crate) struct Outcome {
     pub failed: bool,
     /// A brace may be missing: the next one does not necessarily end the block.
     unsure: bool,
+    /// Its end was not found: what it lacks may have been meant to follow.
+    cut: bool,
 }
 
 impl Outcome {
@@ -119,11 +121,11 @@ impl Parser<'_> {
 
     /// Reads the keywords of a block up to its closing brace. `head` is the block's own keyword.
     pub(super) fn block<B>(&mut self, head: Token, grammar: &Grammar<'_, B>, draft: &mut B) -> Outcome {
-        let mut outcome = Outcome { span: self.span(head), seen: Vec::new(), failed: false, unsure: false };
+        let mut outcome = Outcome { span: self.span(head), seen: Vec::new(), failed: false, unsure: false, cut: false };
         loop {
             let before = self.lexer;
             let Some(token) = self.next() else {
-                self.unclosed(head, &outcome, None);
+                self.unclosed(head, &mut outcome, None);
                 break;
             };
             if self.is(token, "}") {
@@ -132,7 +134,7 @@ impl Parser<'_> {
                 }
             } else if self.starts_block(token) {
                 self.lexer = before;
-                self.unclosed(head, &outcome, Some(token));
+                self.unclosed(head, &mut outcome, Some(token));
                 break;
             } else {
                 self.entry(token, before, grammar, draft, &mut outcome);
@@ -225,7 +227,7 @@ impl Parser<'_> {
 
     /// After an error: on to the next keyword, to the end of the block, or to the next block. `from` is where the value
     /// began, so that braces are counted from there.
-    fn recover<B>(&mut self, from: Lexer, reach: Depth, keys: &[Key<B>], outcome: &mut Outcome) {
+    fn recover<B>(&mut self, from: Lexer, mut reach: Depth, keys: &[Key<B>], outcome: &mut Outcome) {
         self.lexer = from;
         let mut depth = 0;
         loop {
@@ -235,6 +237,10 @@ impl Parser<'_> {
                 depth += 1;
             } else if self.is(token, "}") && depth > 0 {
                 depth -= 1;
+                // The group in which the error stands is closed: what is in later ones is theirs.
+                if depth == 0 && token.start >= self.failed_at {
+                    reach = Depth::Outer;
+                }
             } else if self.is(token, "<code>") {
                 self.lexer.skip_code(&self.bytes);
             } else if self.is(token, "}") || self.starts_block(token) {
@@ -252,7 +258,8 @@ impl Parser<'_> {
     }
 
     /// Reports a block that ends with the file or where the next one starts, unless it is broken anyway.
-    fn unclosed(&mut self, head: Token, outcome: &Outcome, next: Option<Token>) {
+    fn unclosed(&mut self, head: Token, outcome: &mut Outcome, next: Option<Token>) {
+        outcome.cut = true;
         if outcome.failed {
             return;
         }
@@ -269,11 +276,14 @@ impl Parser<'_> {
         self.scan(self.lexer, Reach::Type).0
     }
 
-    /// Passes the rest of a block without reading it, and tells its name and type.
-    pub(super) fn skip_block(&mut self, head: Token) -> Outline {
+    /// Passes the rest of a block without reading it, and tells its name and type. What is wrong with it is told in
+    /// `remark`, unless its end is not to be found, which may be the reason.
+    pub(super) fn skip_block(&mut self, head: Token, remark: Option<Diagnostic>) -> Outline {
         let (outline, lexer, closed) = self.scan(self.lexer, Reach::WholeBlock);
         self.lexer = lexer;
-        if !closed {
+        if closed {
+            remark.into_iter().for_each(|remark| self.diagnostics.push(remark));
+        } else {
             let message = format!("this `{}` is never closed", self.shown(head));
             self.diagnostics.push(Diagnostic::error(self.span(head), message).hint("add the missing `}`"));
         }
@@ -341,7 +351,7 @@ impl Parser<'_> {
     pub(super) fn require(&mut self, what: &str, outcome: &Outcome, head: Span, required: &[Required]) {
         let lacks = |(keys, _): &&Required| !keys.iter().any(|key| outcome.has(key));
         let missing: Vec<&Required> = required.iter().filter(lacks).collect();
-        if missing.is_empty() {
+        if missing.is_empty() || outcome.cut {
             return;
         }
         let keys: Vec<String> = missing.iter().map(|(keys, _)| suggest::list(keys.iter().copied())).collect();

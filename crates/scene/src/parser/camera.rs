@@ -1,6 +1,6 @@
 //! Reads the `camera` block.
 
-use super::block::{Grammar, Key, Outcome, Required};
+use super::block::{Grammar, Key, Required};
 use super::value::unknown_word;
 use super::{Failed, Parsed, Parser};
 use crate::description::{Camera, Lens, Transform, TransformKind, View};
@@ -60,6 +60,10 @@ const LENSES: &[LensType] = &[
     LensType { name: "spherical", keys: &[], required: &[], build: |_| Lens::Spherical },
     LensType { name: "fisheye", keys: &[], required: &[], build: |_| Lens::Fisheye },
 ];
+
+/// What a camera that is not given by a transform needs.
+const LOOK_AT: [Required; 3] =
+    [(&["eye", "transform"], "eye 0 0 5"), (&["target"], "target 0 0 0"), (&["up"], "up 0 1 0")];
 
 /// The keywords of every camera.
 const COMMON: [&str; 7] = ["type", "shutter", "transform", "eye", "target", "up", "steps"];
@@ -128,14 +132,13 @@ pub(super) fn camera(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     parser.open("camera")?;
     let place = parser.span(head);
     let Some(kind) = parser.outline().kind else {
-        parser.missing_type(head, "camera", LENSES.iter().map(|lens| lens.name));
-        parser.skip_block(head);
+        let remark = parser.missing_type(head, "camera", LENSES.iter().map(|lens| lens.name));
+        parser.skip_block(head, Some(remark));
         return Ok(());
     };
     let Some(lens) = LENSES.iter().find(|lens| lens.name == kind.value) else {
         let diagnostic = unknown_word("camera type", &kind, LENSES.iter().map(|lens| lens.name));
-        parser.diagnostics.push(diagnostic);
-        parser.skip_block(head);
+        parser.skip_block(head, Some(diagnostic));
         return Ok(());
     };
     let mut draft = Draft { fov: 90.0, aspect: 1.0, fdist: 1.0, ..Draft::default() };
@@ -146,32 +149,27 @@ pub(super) fn camera(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
             parser.diagnostics.push(Diagnostic::warning(span, message));
         }
     }
-    parser.require(lens.name, &outcome, place, lens.required);
-    if let Some(view) = parser.view(&draft, &outcome, place) {
+    let is_moved = outcome.has("transform") || outcome.has("steps");
+    let view: &[Required] = if is_moved { &[] } else { &LOOK_AT };
+    parser.require("camera", &outcome, place, &[lens.required, view].concat());
+    if let Some(view) = draft.view() {
         let lens = (lens.build)(&draft);
         parser.scene.cameras.push(Camera { lens, view, shutter: draft.shutter, span: outcome.span });
     }
     Ok(())
 }
 
-impl Parser<'_> {
-    /// Where the camera stands, if the block says so.
-    fn view(&mut self, draft: &Draft, outcome: &Outcome, head: Span) -> Option<View> {
-        let transform = draft.transform.clone().map(View::Transform);
-        if outcome.has("transform") || outcome.has("steps") {
-            return transform;
+impl Draft {
+    /// Where the camera stands, if nothing is missing.
+    fn view(&self) -> Option<View> {
+        match &self.transform {
+            Some(transform) => Some(View::Transform(transform.clone())),
+            None => Some(View::LookAt { eye: self.eye?, target: self.target?, up: self.up? }),
         }
-        if !["eye", "target", "up"].iter().any(|key| outcome.has(key)) {
-            let message = "`camera` lacks `eye`, `target` and `up`, or `transform`";
-            let hint = "add `eye 0 0 5 target 0 0 0 up 0 1 0`";
-            self.diagnostics.push(Diagnostic::error(head, message).hint(hint));
-            return None;
-        }
-        let required: [Required; 3] = [(&["eye"], "eye 0 0 5"), (&["target"], "target 0 0 0"), (&["up"], "up 0 1 0")];
-        self.require("camera", outcome, head, &required);
-        Some(View::LookAt { eye: draft.eye?, target: draft.target?, up: draft.up? })
     }
+}
 
+impl Parser<'_> {
     /// A number above zero.
     pub(super) fn positive(&mut self, what: &str) -> Parsed<f32> {
         let number = self.spanned(Parser::number::<f32>)?;

@@ -1,7 +1,6 @@
 //! Reads the `light` block.
 
 use super::block::{Grammar, Key, Outcome, Required};
-use super::value::unknown_word;
 use super::{Parsed, Parser};
 use crate::description::{Color, Light, LightKind};
 use crate::diagnostic::Diagnostic;
@@ -43,7 +42,7 @@ const LIGHTS: &[LightType] = &[
                 Ok(())
             }),
         ],
-        required: &[(&["power"], "power 100"), (&["p"], "p 0 5 0")],
+        required: &[(&["power"], "color 1 1 1 power 100"), (&["p"], "p 0 5 0")],
         build: |d| Some(LightKind::Point { color: d.color?, power: d.power?, position: d.position? }),
     },
     LightType {
@@ -106,20 +105,15 @@ fn power(parser: &mut Parser<'_>, draft: &mut Draft, _: crate::Span) -> Parsed<(
 
 pub(super) fn light(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     parser.open("light")?;
-    let names = || LIGHTS.iter().map(|light| light.name).chain(UNSUPPORTED.iter().copied());
+    let names = || LIGHTS.iter().map(|light| light.name);
     let Some(kind) = parser.outline().kind else {
-        parser.missing_type(head, "light", names());
-        parser.skip_block(head);
+        let remark = parser.missing_type(head, "light", names());
+        parser.skip_block(head, Some(remark));
         return Ok(());
     };
     let Some(light) = LIGHTS.iter().find(|light| light.name == kind.value) else {
-        if UNSUPPORTED.contains(&kind.value.as_str()) {
-            parser.unsupported(head, &format!("light type `{}`", kind.value));
-        } else {
-            let diagnostic = unknown_word("light type", &kind, names());
-            parser.diagnostics.push(diagnostic);
-        }
-        parser.skip_block(head);
+        let remark = parser.other_type(head, "light", &kind, names(), UNSUPPORTED);
+        parser.skip_block(head, Some(remark));
         return Ok(());
     };
     let mut draft = Draft::default();

@@ -62,6 +62,7 @@ impl Parser<'_> {
         for (kind, span, count) in found.0 {
             let message = match count {
                 1 => kind.message().to_owned(),
+                2 => format!("{} (here and in another place)", kind.message()),
                 _ => format!("{} (here and in {} more places)", kind.message(), count - 1),
             };
             self.diagnostics.push(Diagnostic::warning(span, message).hint(kind.hint()));

@@ -322,8 +322,8 @@ impl Parser<'_> {
         let indices = || triangles.values.iter().flatten();
         let Some(at) = indices().position(is_bad) else { return true };
         let (first, count) = (triangles.values[at / 3][at % 3], indices().filter(|index| is_bad(index)).count());
-        let more = if count > 1 { format!(" (and {} more indices)", count - 1) } else { String::new() };
-        let message = format!("there is no point {first}: the mesh has {points} points{more}");
+        let more = if count > 1 { format!(" (nor for {} more indices)", count - 1) } else { String::new() };
+        let message = format!("there is no point {first} in a mesh of {points}{more}");
         let span = self.nth_number(triangles.start, at).unwrap_or(triangles.key);
         let hint = match points {
             0 => "a mesh without points has no triangles".to_owned(),
@@ -367,9 +367,9 @@ impl Parser<'_> {
         let shaders = draft.shaders.len();
         let at = list.values.iter().position(|index| *index as usize >= shaders);
         if let (Some(at), true) = (at, draft.is_visible() && shaders > 0) {
-            let message = format!("there is no shader {}: the object has {shaders}", list.values[at]);
+            let message = format!("there is no shader {} in a list of {shaders}", list.values[at]);
             let span = self.nth_number(list.start, at).unwrap_or(list.key);
-            self.diagnostics.push(Diagnostic::error(span, message).hint("shaders of an object count from 0"));
+            self.diagnostics.push(Diagnostic::error(span, message).hint("`face_shaders` counts from 0"));
             return None;
         }
         Some(list.values)

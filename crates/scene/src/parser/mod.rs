@@ -56,7 +56,7 @@ pub fn parse(path: &Path, bytes: impl Into<Arc<[u8]>>, loader: &dyn Loader) -> (
 
 /// `` cannot read `a.sc`: no such file ``, in our own words where the system's differ between machines.
 fn unreadable(path: &Path, error: &io::Error) -> String {
-    let path = path.display();
+    let path = value::printable(path.display().to_string().chars());
     match error.kind() {
         io::ErrorKind::NotFound => format!("cannot read `{path}`: no such file"),
         io::ErrorKind::PermissionDenied => format!("cannot read `{path}`: permission denied"),

@@ -3,7 +3,6 @@
 use super::block::{Grammar, Key, Outcome, Reader, Required};
 use super::loose::Loose;
 use super::mesh::{self, MeshDraft};
-use super::value::unknown_word;
 use super::{Parsed, Parser};
 use crate::description::{Geometry, Instance, Name, Object, Plane, Transform};
 use crate::diagnostic::Diagnostic;
@@ -164,20 +163,14 @@ impl Parser<'_> {
 
 pub(super) fn object(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     parser.open("object")?;
-    let names = || TYPES.iter().map(|object| object.name).chain(UNSUPPORTED.iter().copied());
+    let names = || TYPES.iter().map(|object| object.name);
     let outline = parser.outline();
     let Some(object) = TYPES.iter().find(|o| outline.kind.as_ref().is_some_and(|kind| kind.value == o.name)) else {
-        match outline.kind {
-            Some(kind) if UNSUPPORTED.contains(&kind.value.as_str()) => {
-                parser.unsupported(head, &format!("object type `{}`", kind.value));
-            }
-            Some(kind) => {
-                let diagnostic = unknown_word("object type", &kind, names());
-                parser.diagnostics.push(diagnostic);
-            }
+        let remark = match outline.kind {
+            Some(kind) => parser.other_type(head, "object", &kind, names(), UNSUPPORTED),
             None => parser.missing_type(head, "object", names()),
-        }
-        if let Some(name) = parser.skip_block(head).name {
+        };
+        if let Some(name) = parser.skip_block(head, Some(remark)).name {
             parser.dropped_objects.entry(name.value).or_insert(name.span);
         }
         return Ok(());

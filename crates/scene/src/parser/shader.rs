@@ -6,7 +6,7 @@ use jaspe_texture::declare::{Declaration, Kind};
 use super::block::{Grammar, Key, Required};
 use super::loose::Loose;
 
-use super::value::{shorten, unknown_word};
+use super::value::shorten;
 use super::{Context, Failed, Parsed, Parser};
 use crate::description::{Color, ColorOrTexture, Name, Setting, SettingValue, Shader, ShaderKind};
 use crate::diagnostic::Diagnostic;
@@ -184,8 +184,7 @@ pub(super) fn type_called(name: &str) -> Option<Type> {
 }
 
 fn type_names() -> impl Iterator<Item = &'static str> + Clone {
-    let plain = SHADERS.iter().map(|shader| shader.name);
-    plain.chain(Texture::ALL.iter().map(|d| d.name)).chain(UNSUPPORTED.iter().copied())
+    SHADERS.iter().map(|shader| shader.name).chain(Texture::ALL.iter().map(|d| d.name))
 }
 
 impl Type {
@@ -228,28 +227,20 @@ impl Draft {
 
 pub(super) fn shader(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     parser.open("shader")?;
-    let Some(kind) = parser.outline().kind else {
-        parser.missing_type(head, "shader", type_names());
-        let outline = parser.skip_block(head);
-        parser.stand_in(outline.name, head);
-        return Ok(());
+    let found = match parser.outline().kind {
+        None => Err(parser.missing_type(head, "shader", type_names())),
+        Some(kind) => match type_called(&kind.value) {
+            Some(Type::Unsupported) | None => Err(parser.other_type(head, "shader", &kind, type_names(), UNSUPPORTED)),
+            Some(shader) => Ok((kind, shader)),
+        },
     };
-    let found = match type_called(&kind.value) {
-        Some(Type::Unsupported) => {
-            parser.unsupported(head, &format!("shader type `{}`", kind.value));
-            None
+    let (kind, shader) = match found {
+        Ok(found) => found,
+        Err(remark) => {
+            let outline = parser.skip_block(head, Some(remark));
+            parser.stand_in(outline.name, head);
+            return Ok(());
         }
-        None => {
-            let diagnostic = unknown_word("shader type", &kind, type_names());
-            parser.diagnostics.push(diagnostic);
-            None
-        }
-        known => known,
-    };
-    let Some(shader) = found else {
-        let outline = parser.skip_block(head);
-        parser.stand_in(outline.name, head);
-        return Ok(());
     };
     let mut draft = match shader {
         Type::Procedural(declaration) => Draft::procedural(declaration),
@@ -300,28 +291,25 @@ impl Parser<'_> {
         let message = format!("there is already {what} `{}`; names find the first one", shorten(&name.value));
         self.diagnostics.push(Diagnostic::warning(name.span, message).label(first, "first declared here"));
     }
-
-    /// Reports a block without `type`.
-    pub(super) fn missing_type(&mut self, head: Token, what: &str, names: impl Iterator<Item = &'static str>) {
-        let diagnostic = Diagnostic::error(self.span(head), format!("`{what}` lacks `type`"));
-        self.diagnostics.push(diagnostic.hint(format!("types are {}", crate::suggest::list_all(names))));
-    }
 }
 
 /// Reads the value of a declared parameter.
 fn parameter_value(parser: &mut Parser<'_>, draft: &mut Draft, key: Span) -> Parsed<()> {
     let Context { name, .. } = parser.context;
+    if let Some(Kind::Color) = draft.declaration.and_then(|d| d.parameter(name)).map(|p| p.kind) {
+        parser.context.example = "{ \"sRGB nonlinear\" 1 0.5 0 }";
+    }
     let parameter = draft.declaration.and_then(|declaration| declaration.parameter(name));
     let parameter = parameter.expect("the keywords are made of the parameters");
     let value = parser.spanned(|parser| match parameter.kind {
         Kind::Int { min, max } => {
             let value = parser.spanned(Parser::int)?;
-            parser.require_range(value, min, max)?;
+            parser.require_range(value, min, max, i64::MAX)?;
             Ok(SettingValue::Int(value.value))
         }
         Kind::Float { min, max } => {
             let value = parser.spanned(Parser::number::<f64>)?;
-            parser.require_range(value, min, max)?;
+            parser.require_range(value, min, max, f64::MAX)?;
             Ok(SettingValue::Float(value.value))
         }
         Kind::Color => Ok(SettingValue::Color(parser.color()?)),
@@ -337,11 +325,22 @@ fn parameter_value(parser: &mut Parser<'_>, draft: &mut Draft, key: Span) -> Par
 }
 
 impl Parser<'_> {
-    fn require_range<T: PartialOrd + std::fmt::Display>(&mut self, value: Spanned<T>, min: T, max: T) -> Parsed<()> {
+    /// Reports a value out of its range; a range up to `unlimited` has no upper end.
+    fn require_range<T: PartialOrd + std::fmt::Display>(
+        &mut self,
+        value: Spanned<T>,
+        min: T,
+        max: T,
+        unlimited: T,
+    ) -> Parsed<()> {
         if value.value >= min && value.value <= max {
             return Ok(());
         }
-        let message = format!("`{}` must be from {min} to {max}, and is {}", self.context.name, value.value);
+        let range = match max >= unlimited {
+            true => format!("at least {min}"),
+            false => format!("from {min} to {max}"),
+        };
+        let message = format!("`{}` must be {range}, and is {}", self.context.name, value.value);
         self.failed_at = value.span.end;
         self.diagnostics.push(Diagnostic::error(value.span, message));
         Err(Failed)

@@ -1,11 +1,11 @@
 //! The top level of a file: which words start a statement, and what happens between them.
 
-use super::value::shorten;
+use super::value::{shorten, unknown_word};
 use super::{Context, Parsed, Parser, camera, image, include, light, object, shader};
-use crate::description::{Dialect, Filter};
+use crate::description::{Dialect, Filter, Name};
 use crate::diagnostic::Diagnostic;
 use crate::lexer::Token;
-use crate::source::Spanned;
+use crate::source::{Span, Spanned};
 use crate::suggest;
 
 /// How a statement goes on after its keyword.
@@ -78,6 +78,11 @@ impl Parser<'_> {
                 self.skip_to_statement();
             }
         }
+        if let Some(start) = self.lexer.unclosed_quote {
+            let quote = self.span(Token { start, end: start + 1 });
+            let message = "this quotation ends with its line";
+            self.diagnostics.push(Diagnostic::warning(quote, message).hint("add the closing `\"`"));
+        }
         if let Some(start) = self.lexer.unclosed_comment {
             let opening = self.span(Token { start, end: start + 2 });
             let message = "this block comment is never closed, and hides the rest of the file";
@@ -133,26 +138,58 @@ impl Parser<'_> {
         }
     }
 
-    /// Warns that something of Sunflow's is passed over.
-    pub(super) fn unsupported(&mut self, token: Token, what: &str) {
-        let message = format!("skipped: {what} is not supported yet");
-        self.diagnostics.push(Diagnostic::warning(self.span(token), message));
+    /// The remark on a block without `type`.
+    pub(super) fn missing_type(
+        &self,
+        head: Token,
+        what: &str,
+        names: impl Iterator<Item = &'static str>,
+    ) -> Diagnostic {
+        let diagnostic = Diagnostic::error(self.span(head), format!("`{what}` lacks `type`"));
+        diagnostic.hint(format!("types are {}", suggest::list_all(names)))
     }
+
+    /// The remark on a type that is not among the `supported`: a warning if it is one of Sunflow's.
+    pub(super) fn other_type(
+        &self,
+        head: Token,
+        what: &str,
+        kind: &Name,
+        supported: impl Iterator<Item = &'static str> + Clone,
+        unsupported: &[&'static str],
+    ) -> Diagnostic {
+        if unsupported.contains(&kind.value.as_str()) {
+            return skipped(self.span(head), &format!("{what} type `{}`", kind.value));
+        }
+        let all = supported.clone().chain(unsupported.iter().copied());
+        match suggest::nearest(&kind.value, all.clone()) {
+            Some(_) => unknown_word(&format!("{what} type"), kind, all),
+            None => unknown_word(&format!("{what} type"), kind, supported),
+        }
+    }
+}
+
+/// The remark on something of Sunflow's that is passed over.
+fn skipped(span: Span, what: &str) -> Diagnostic {
+    Diagnostic::warning(span, format!("skipped: {what} is not supported yet"))
 }
 
 fn unsupported(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     let keyword = STATEMENTS.iter().find(|s| parser.is(head, s.name)).map_or("", |statement| statement.name);
     parser.open(keyword)?;
-    let outline = parser.skip_block(head);
-    let is_off = outline.kind.is_some_and(|kind| matches!(kind.value.as_str(), "none" | "null"));
-    if !(keyword == "gi" && is_off) {
-        parser.unsupported(head, &format!("`{keyword}`"));
-    }
+    let kind = parser.outline().kind;
+    let is_off = keyword == "gi" && kind.is_some_and(|kind| matches!(kind.value.as_str(), "none" | "null"));
+    let remark = skipped(parser.span(head), &format!("`{keyword}`"));
+    parser.skip_block(head, (!is_off).then_some(remark));
     Ok(())
 }
 
 fn override_shader(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
     let name = parser.word("the name of a shader")?;
+    let next = parser.peek();
+    if next.is_none_or(|token| STATEMENTS.iter().any(|statement| parser.is(token, statement.name))) {
+        return Err(parser.expected("`true` or `false` after the name", next));
+    }
     parser.boolean()?;
     parser.scene.override_shader = (name.value != "none").then_some(name);
     Ok(())
@@ -212,7 +249,7 @@ impl Parser<'_> {
         let filter = FILTERS.iter().find(|(name, _)| *name == word.value).map(|(_, filter)| *filter);
         if filter.is_none() {
             let names = FILTERS.iter().map(|(name, _)| *name);
-            let mut diagnostic = super::value::unknown_word("filter", &word, names);
+            let mut diagnostic = unknown_word("filter", &word, names);
             diagnostic.severity = crate::Severity::Warning;
             diagnostic.message.push_str("; `box` is used");
             self.diagnostics.push(diagnostic);

@@ -3,7 +3,7 @@
 use super::{Failed, Parsed, Parser};
 use crate::description::Name;
 use crate::diagnostic::Diagnostic;
-use crate::lexer::Token;
+use crate::lexer::{Syntax, Token};
 use crate::number::{self, Float};
 use crate::source::Spanned;
 use crate::suggest;
@@ -99,7 +99,11 @@ impl Parser<'_> {
     pub(super) fn expected(&mut self, what: &str, found: Option<Token>) -> Failed {
         let name = self.context.name;
         let Some(token) = found else {
-            let message = format!("`{name}` expects {what}, found the end of the file");
+            let end = match self.syntax {
+                Syntax::Scene => "the end of the file",
+                Syntax::Assignment => "nothing",
+            };
+            let message = format!("`{name}` expects {what}, found {end}");
             let diagnostic = self.with_example(Diagnostic::error(self.end_span(), message));
             return self.fail(None, diagnostic);
         };
@@ -157,15 +161,19 @@ pub(super) fn unknown_word<'a>(what: &str, word: &Name, known: impl Iterator<Ite
 
 /// Cuts long words and makes control characters visible.
 pub(super) fn shorten(text: &str) -> String {
-    let mut shown: String = text.chars().take(SHOWN).flat_map(visible).collect();
-    if text.chars().nth(SHOWN).is_some() {
-        shown.push('…');
-    }
-    shown
+    let shown = printable(text.chars().take(SHOWN));
+    if text.chars().nth(SHOWN).is_some() { shown + "…" } else { shown }
 }
 
-fn visible(character: char) -> impl Iterator<Item = char> {
-    let escaped = character.is_control() || character == '\u{feff}';
-    let text = if escaped { character.escape_default().to_string() } else { character.to_string() };
-    text.chars().collect::<Vec<_>>().into_iter()
+/// Makes control characters visible.
+pub(super) fn printable(text: impl Iterator<Item = char>) -> String {
+    let mut shown = String::new();
+    for character in text {
+        match character {
+            '\u{feff}' => shown.extend(character.escape_default()),
+            _ if character.is_control() => shown.extend(character.escape_default()),
+            _ => shown.push(character),
+        }
+    }
+    shown
 }
