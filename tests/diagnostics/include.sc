@@ -1,0 +1,12 @@
+# error: 10-19 cannot read `missing.sc`: no such file
+# hint: looked in the current folder
+include "missing.sc"
+include "include/broken.sc"
+include "include/loop.sc"
+# error: 10-18 cannot include `model.obj`: not a `.sc` file
+include "model.obj"
+# warning: 10-16 skipped: `.sca` files are not supported yet
+include "old.sca"
+include
+# error: 1 `include` expects a file name, found the end of the file
+# hint: for example `include "file.sc"`

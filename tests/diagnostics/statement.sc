@@ -1,0 +1,28 @@
+# error: 9-14 unknown dialect `sunfow`
+# hint: did you mean `sunflow`?
+dialect sunfow
+dialect sunflow
+# error: 9-14 the scene names two dialects
+# label: [2] 9-15 first named here
+# hint: keep one of them
+dialect report
+# error: 8-10 `bucket` expects a whole number, found `big`
+# hint: for example `bucket 32 hilbert`
+bucket big hilbert
+override a
+# error: 1-11 `override` expects `true` or `false` after the name, found `texturepath`
+# hint: for example `override NAME false`
+# error: 13-13 `texturepath` expects a folder, found `}`
+# hint: for example `texturepath "folder"`
+texturepath }
+accel bih
+filter mitchell
+# warning: 1-2 skipped: `gi` is not supported yet
+gi { type path samples 16 }
+gi { type none }
+# warning: 1-7 skipped: `photons` is not supported yet
+photons { caustics 1000 kd 64 0.5 }
+# warning: 1-8 skipped: `modifier` is not supported yet
+modifier { name m type bump texture t.png scale 1 }
+# warning: 1-11 skipped: `lightserver` is not supported yet
+lightserver { shadows true }
