@@ -7,7 +7,6 @@ mod arguments;
 mod command;
 mod failure;
 mod flip;
-mod format_number;
 mod interrupt;
 mod locate;
 mod measure;
@@ -15,6 +14,7 @@ mod output;
 mod progress;
 mod report;
 mod scene_file;
+mod show;
 mod stats;
 mod terminal;
 

@@ -6,8 +6,8 @@ use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer,
 use jaspe_scene::{Diagnostic, Diagnostics, Severity, Sources, Span};
 use serde_json::{Value, json};
 
-use crate::format_number::count;
 use crate::locate::{Excerpt, Locator};
+use crate::show::count;
 
 /// Prints what ended a command.
 pub fn print_failure(message: &str, hints: &[String]) {

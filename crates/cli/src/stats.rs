@@ -5,7 +5,7 @@ use std::time::Duration;
 use jaspe_render::Stats;
 use serde::Serialize;
 
-use crate::format_number::duration;
+use crate::show::duration;
 
 /// The object that `--stats json` prints. Its words are a contract.
 #[derive(Debug, Serialize)]

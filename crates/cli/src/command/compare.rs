@@ -9,10 +9,10 @@ use serde_json::json;
 use crate::Outcome;
 use crate::arguments::OutputFormat;
 use crate::failure::Failure;
-use crate::format_number::shortest;
 use crate::measure::{Comparison, Shown, compare, heat};
 use crate::output::Output;
 use crate::report;
+use crate::show::{json_text, shortest};
 
 /// Measure how far apart two pictures are.
 ///
@@ -64,7 +64,7 @@ impl Compare {
         let (comparison, errors) = compare(&a, &b);
         let text = match self.format {
             OutputFormat::Text => text(&comparison),
-            OutputFormat::Json => format!("{:#}\n", json!(comparison)),
+            OutputFormat::Json => json_text(&comparison) + "\n",
         };
         std::io::stdout().write_all(text.as_bytes())?;
         if let Some(output) = output {

@@ -9,7 +9,7 @@ use jaspe_noise::{Basis, Combine, Noise as Lattice, Sum};
 use crate::Outcome;
 use crate::arguments::period;
 use crate::failure::Failure;
-use crate::format_number::shortest;
+use crate::show::shortest;
 
 /// Print the value of a noise at a point, in double precision.
 ///

@@ -7,15 +7,14 @@ use std::time::{Duration, Instant};
 use clap::{Args, ValueEnum};
 use jaspe_render::{CompileOptions, CompiledScene, Film, RenderOptions, Stats, render};
 use jaspe_scene::Severity;
-use serde_json::json;
 
 use crate::Outcome;
 use crate::arguments::{DialectName, LookName, crop, size};
 use crate::failure::Failure;
-use crate::format_number::{duration, size as file_size};
 use crate::output::Output;
 use crate::progress::{Progress, When};
 use crate::scene_file::{self, Loaded};
+use crate::show::{duration, json_text, size as file_size};
 use crate::stats::{Rays, Report, Times, peak_rss_bytes};
 use crate::{interrupt, report, terminal};
 
@@ -157,7 +156,8 @@ impl Render {
         }
         if self.stats.is_some() {
             let warnings = loaded.diagnostics.count(Severity::Warning);
-            writeln!(std::io::stdout(), "{:#}", json!(self.report(&film, &stats, &times, total, warnings)))?;
+            let report = self.report(&film, &stats, &times, total, warnings);
+            writeln!(std::io::stdout(), "{}", json_text(&report))?;
         }
         Ok(Outcome::Done)
     }

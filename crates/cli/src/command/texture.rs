@@ -12,8 +12,8 @@ use crate::Outcome;
 use crate::arguments::{Assignment, assignment, size};
 use crate::command::textures::names;
 use crate::failure::{Failure, nearest};
-use crate::format_number::{duration, size as file_size};
 use crate::output::Output;
+use crate::show::{duration, size as file_size};
 use crate::terminal;
 
 /// Draw one procedural material on a plane.

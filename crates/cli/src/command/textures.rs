@@ -12,7 +12,7 @@ use serde_json::json;
 use crate::Outcome;
 use crate::arguments::OutputFormat;
 use crate::failure::Failure;
-use crate::format_number::shortest;
+use crate::show::shortest;
 
 /// List the procedural materials with their parameters.
 ///

@@ -1,4 +1,4 @@
-//! Numbers as people and programs read them.
+//! Results as people and programs read them.
 
 use std::time::Duration;
 
@@ -35,6 +35,11 @@ pub fn size(bytes: usize) -> String {
 /// `1 error`, `2 errors`.
 pub fn count(number: usize, noun: &str) -> String {
     if number == 1 { format!("1 {noun}") } else { format!("{number} {noun}s") }
+}
+
+/// A value as indented JSON, its fields in the order of their declaration.
+pub fn json_text(value: &impl serde::Serialize) -> String {
+    serde_json::to_string_pretty(value).expect("plain data can be written as JSON")
 }
 
 #[cfg(test)]
