@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::basis::{Basis, Period, Tables, classic, improved, lattice};
 use crate::number::{Dual, Real};
-use crate::simd::{self, Kernel, Level};
+use crate::simd::{self, Kernel, Level, Terms};
 
 /// A noise: points in, numbers out. Cheap to clone; immutable.
 #[derive(Debug, Clone)]
@@ -92,7 +92,27 @@ impl Noise {
     /// # Panics
     /// When the slices differ in length.
     pub fn fill_at<const D: usize>(&self, level: Level, points: [&[f32]; D], values: &mut [f32]) {
-        simd::map_at(level, self, points, values);
+        let once = Terms { octaves: 1, absolute: false, lacunarity: 1.0, gain: 1.0 };
+        self.sum_with(self, level, &once, points, values);
+    }
+
+    /// Fills `values` with a sum of this noise, as far as there is a kernel made by hand for it, the rest by the generic
+    /// evaluation `kernel` of the same sum.
+    pub(crate) fn sum_with<const D: usize>(
+        &self,
+        kernel: &impl Kernel<D>,
+        level: Level,
+        terms: &Terms,
+        points: [&[f32]; D],
+        values: &mut [f32],
+    ) {
+        let mut done = 0;
+        if self.basis == Basis::Improved && self.period == [0.0; 3] {
+            done = simd::sum_improved(level, &self.tables, terms, points, values);
+        }
+        if done < values.len() {
+            simd::map_at(level, kernel, points.map(|coordinates| &coordinates[done..]), &mut values[done..]);
+        }
     }
 
     /// The value at a point that has been multiplied by `frequency`, which lengthens the period (counted in cells).

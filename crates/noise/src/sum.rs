@@ -2,7 +2,7 @@
 
 use crate::noise::Noise;
 use crate::number::{Dual, Real};
-use crate::simd::{self, Kernel, Level};
+use crate::simd::{self, Kernel, Level, Terms};
 
 /// What an octave adds to a [`Sum`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -110,7 +110,13 @@ impl Sum {
     /// # Panics
     /// When the slices differ in length.
     pub fn fill_at<const D: usize>(&self, level: Level, points: [&[f32]; D], values: &mut [f32]) {
-        simd::map_at(level, self, points, values);
+        let terms = Terms {
+            octaves: self.octaves,
+            absolute: self.combine == Combine::Absolute,
+            lacunarity: Self::LACUNARITY as f32,
+            gain: Self::GAIN as f32,
+        };
+        self.noise.sum_with(self, level, &terms, points, values);
     }
 }
 

@@ -11,6 +11,7 @@ pub struct ByteTable {
 }
 
 impl ByteTable {
+
     /// A table with these entries.
     pub fn new(bytes: [u8; 256]) -> Self {
         ByteTable { bytes, words: bytes.map(i32::from) }
@@ -30,6 +31,7 @@ pub struct PairTable {
 }
 
 impl PairTable {
+
     /// A table with these entries.
     pub fn new(bytes: [u8; 256]) -> Self {
         let next: [u8; 256] = std::array::from_fn(|i| bytes[(i + 1) % 256]);

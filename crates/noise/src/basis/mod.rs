@@ -42,9 +42,9 @@ impl Basis {
 #[derive(Debug, PartialEq)]
 pub(crate) struct Tables {
     /// The permutation.
-    permutation: PairTable,
+    pub(crate) permutation: PairTable,
     /// Edge codes (see [`Real::edge_dot`]): of the entry in bits 0–3, of the next in bits 4–7.
-    edges: ByteTable,
+    pub(crate) edges: ByteTable,
     /// The components of the unit gradients.
     gradients: [FloatTable; 3],
 }

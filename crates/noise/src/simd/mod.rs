@@ -14,6 +14,7 @@ mod sse;
 
 use std::sync::OnceLock;
 
+use crate::basis::Tables;
 use crate::number::Real;
 
 /// An evaluation of `D` inputs to one value.
@@ -32,7 +33,7 @@ pub enum Level {
     Sse,
     /// AVX2 and FMA: eight at a time.
     Avx2,
-    /// AVX-512 with the foundation, BW, DQ, VL and VBMI: sixteen at a time, and tables of bytes in registers.
+    /// AVX-512 with the foundation, BW, DQ, VL, VBMI and VBMI2: sixteen at a time, and tables of bytes in registers.
     Avx512,
 }
 
@@ -77,7 +78,7 @@ fn detect() -> Level {
     macro_rules! all { ($($feature:tt)*) => { $(is_x86_feature_detected!($feature))&&* }; }
     let sse = all!("sse4.1");
     let avx2 = sse && all!("avx2" "fma");
-    let avx512 = avx2 && all!("avx512f" "avx512bw" "avx512dq" "avx512vl" "avx512vbmi");
+    let avx512 = avx2 && all!("avx512f" "avx512bw" "avx512dq" "avx512vl" "avx512vbmi" "avx512vbmi2");
     match (avx512, avx2, sse) {
         (true, _, _) => Level::Avx512,
         (_, true, _) => Level::Avx2,
@@ -121,6 +122,45 @@ pub fn map_at<K: Kernel<D>, const D: usize>(level: Level, kernel: &K, inputs: [&
     }
 }
 
+/// A sum over octaves, for the kernels made by hand.
+pub(crate) struct Terms {
+    /// How many.
+    pub octaves: u32,
+    /// Whether each adds its absolute value.
+    pub absolute: bool,
+    /// The ratio between the frequencies of neighbouring octaves.
+    pub lacunarity: f32,
+    /// The ratio between the amplitudes of neighbouring octaves.
+    pub gain: f32,
+}
+
+/// The sum of improved noise without a period at the first points, by a kernel made by hand; returns how many points it
+/// did, perhaps none. Same bits as the generic evaluation.
+pub(crate) fn sum_improved<const D: usize>(
+    level: Level,
+    tables: &Tables,
+    terms: &Terms,
+    points: [&[f32]; D],
+    values: &mut [f32],
+) -> usize {
+    for coordinates in points {
+        assert_eq!(coordinates.len(), values.len(), "all slices have the same length");
+    }
+    if D != 3 {
+        return 0;
+    }
+    let points = [points[0], points[1], points[D - 1]];
+    match level.min(machine_level()) {
+        // SAFETY: the machine has the instructions, `machine_level` says.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => unsafe { avx512::improved::sum(tables, terms, points, values) },
+        _ => {
+            let _ = (tables, terms, points);
+            0
+        }
+    }
+}
+
 fn map_scalar<K: Kernel<D>, const D: usize>(kernel: &K, inputs: [&[f32]; D], outputs: &mut [f32]) {
     for (i, output) in outputs.iter_mut().enumerate() {
         *output = kernel.run(inputs.map(|input| input[i]));
@@ -140,7 +180,7 @@ fn map_avx2<K: Kernel<D>, const D: usize>(kernel: &K, inputs: [&[f32]; D], outpu
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi")]
+#[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
 fn map_avx512<K: Kernel<D>, const D: usize>(kernel: &K, inputs: [&[f32]; D], outputs: &mut [f32]) {
     map_vectors::<avx512::F32x16, K, D, 16>(kernel, inputs, outputs);
 }

@@ -1,5 +1,7 @@
 //! Sixteen lanes: AVX-512 with VBMI. Tables of bytes are read from four registers, 64 bytes at a time.
 
+pub(super) mod improved;
+
 use std::arch::x86_64::*;
 use std::ops::{Neg, Not};
 
