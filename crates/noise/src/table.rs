@@ -11,7 +11,6 @@ pub struct ByteTable {
 }
 
 impl ByteTable {
-
     /// A table with these entries.
     pub fn new(bytes: [u8; 256]) -> Self {
         ByteTable { bytes, words: bytes.map(i32::from) }
@@ -31,7 +30,6 @@ pub struct PairTable {
 }
 
 impl PairTable {
-
     /// A table with these entries.
     pub fn new(bytes: [u8; 256]) -> Self {
         let next: [u8; 256] = std::array::from_fn(|i| bytes[(i + 1) % 256]);
@@ -54,5 +52,40 @@ impl FloatTable {
     /// A table with these entries.
     pub fn new(doubles: [f64; 256]) -> Self {
         FloatTable { singles: doubles.map(|entry| entry as f32), doubles }
+    }
+}
+
+/// Tables that hash the eight corners of a cell with seven reads, each entry with what stands after it, repeated so that
+/// the sum of two bytes is an index.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CornerTables {
+    /// The permutation: an entry in the low byte, the next one in the high byte.
+    pairs: [u16; 512],
+    /// For the columns (x, y), (x, y + 1), (x + 1, y), (x + 1, y + 1), 512 entries each: the edge codes of an entry and of
+    /// the next one, eight bits further up for each column.
+    codes: [u32; 2048],
+}
+
+impl CornerTables {
+    /// From the permutation, and its edge codes as [`crate::basis::Tables`] has them.
+    pub fn new(permutation: &PairTable, edges: &ByteTable) -> Self {
+        CornerTables {
+            pairs: std::array::from_fn(|i| permutation.pairs[i % 256] as u16),
+            codes: std::array::from_fn(|i| u32::from(edges.bytes[i % 256]) << (i / 512 * 8)),
+        }
+    }
+
+    /// The edge codes of a cell's corners, four bits each: from the lowest on (0, 0, 0), (0, 0, 1), (0, 1, 0), … (1, 1, 1).
+    #[inline(always)]
+    pub fn hash(&self, [x, y, z]: [u8; 3]) -> u32 {
+        // The tables from y on and from z on: the compiler sees that bytes are within, and adds no index twice.
+        let pairs: &[u16; 256] = self.pairs[usize::from(y)..].first_chunk().expect("y is below 256");
+        let codes: &[u32; 1792] = self.codes[usize::from(z)..].first_chunk().expect("z is below 256");
+        let pair = self.pairs[usize::from(x)];
+        let (left, right) = (pairs[usize::from(pair as u8)], pairs[usize::from(pair >> 8)]);
+        codes[usize::from(left as u8)]
+            | codes[512 + usize::from(left >> 8)]
+            | codes[1024 + usize::from(right as u8)]
+            | codes[1536 + usize::from(right >> 8)]
     }
 }

@@ -6,7 +6,7 @@ pub(crate) mod lattice;
 
 use crate::number::Real;
 use crate::seed;
-use crate::table::{ByteTable, FloatTable, PairTable};
+use crate::table::{ByteTable, CornerTables, FloatTable, PairTable};
 
 /// A lattice noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -45,6 +45,8 @@ pub(crate) struct Tables {
     pub(crate) permutation: PairTable,
     /// Edge codes (see [`Real::edge_dot`]): of the entry in bits 0–3, of the next in bits 4–7.
     pub(crate) edges: ByteTable,
+    /// Both, for reading all corners of a cell at once.
+    pub(crate) corners: CornerTables,
     /// The components of the unit gradients.
     gradients: [FloatTable; 3],
 }
@@ -54,9 +56,11 @@ impl Tables {
         let permutation = seed::permutation(seed);
         let code = |i: usize| improved::EDGE_CODES[usize::from(permutation[i % 256] & 15)];
         let edges = std::array::from_fn(|i| code(i) | code(i + 1) << 4);
+        let (permutation, edges) = (PairTable::new(permutation), ByteTable::new(edges));
         Tables {
-            permutation: PairTable::new(permutation),
-            edges: ByteTable::new(edges),
+            corners: CornerTables::new(&permutation, &edges),
+            permutation,
+            edges,
             gradients: seed::unit_vectors(seed).map(FloatTable::new),
         }
     }

@@ -151,7 +151,9 @@ pub(crate) fn sum_improved<const D: usize>(
     }
     let points = [points[0], points[1], points[D - 1]];
     match level.min(machine_level()) {
-        // SAFETY: the machine has the instructions, `machine_level` says.
+        // SAFETY, for both: the machine has the instructions, `machine_level` says.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 => unsafe { avx2::improved::sum(tables, terms, points, values) },
         #[cfg(target_arch = "x86_64")]
         Level::Avx512 => unsafe { avx512::improved::sum(tables, terms, points, values) },
         _ => {

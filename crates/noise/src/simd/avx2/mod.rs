@@ -1,5 +1,7 @@
 //! Eight lanes: AVX2 and FMA. Tables are read by gathers.
 
+pub(super) mod improved;
+
 use std::arch::x86_64::*;
 use std::ops::{Neg, Not};
 
@@ -142,9 +144,7 @@ impl Real for F32x8 {
     #[inline(always)]
     fn edge_dot(code: I32x8, x: Self, y: Self, z: Self) -> Self {
         unsafe {
-            let line_x = _mm256_setr_ps(1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0);
-            let line_y = _mm256_setr_ps(1.0, -1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0);
-            let line_z = _mm256_setr_ps(0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0);
+            let [line_x, line_y, line_z] = lines();
             let product = _mm256_mul_ps(_mm256_permutevar8x32_ps(line_z, code.0), z.0);
             let product = _mm256_fmadd_ps(_mm256_permutevar8x32_ps(line_y, code.0), y.0, product);
             F32x8(_mm256_fmadd_ps(_mm256_permutevar8x32_ps(line_x, code.0), x.0, product)).negated_by(code)
@@ -153,12 +153,22 @@ impl Real for F32x8 {
     #[inline(always)]
     fn edge_dot_plane(code: I32x8, x: Self, y: Self) -> Self {
         unsafe {
-            let line_x = _mm256_setr_ps(1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0);
-            let line_y = _mm256_setr_ps(1.0, -1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0);
+            let [line_x, line_y, _] = lines();
             let product = _mm256_mul_ps(_mm256_permutevar8x32_ps(line_y, code.0), y.0);
             F32x8(_mm256_fmadd_ps(_mm256_permutevar8x32_ps(line_x, code.0), x.0, product)).negated_by(code)
         }
     }
+}
+
+/// The components of the edge directions by the low three bits of their codes: see [`Real::edge_dot`].
+#[inline]
+#[target_feature(enable = "avx2")]
+fn lines() -> [__m256; 3] {
+    [
+        _mm256_setr_ps(1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0),
+        _mm256_setr_ps(1.0, -1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0),
+        _mm256_setr_ps(0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0),
+    ]
 }
 
 impl F32x8 {

@@ -126,7 +126,8 @@ fn add_step<const FIRST: bool>(
             // SAFETY: a group has sixteen numbers.
             unsafe {
                 let sum = groups[$group].as_mut_ptr();
-                let total = if FIRST { term } else { _mm512_add_ps(_mm512_loadu_ps(sum), _mm512_mul_ps(amplitude, term)) };
+                let total =
+                    if FIRST { term } else { _mm512_add_ps(_mm512_loadu_ps(sum), _mm512_mul_ps(amplitude, term)) };
                 _mm512_storeu_ps(sum, total);
             }
         };
