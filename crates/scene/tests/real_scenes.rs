@@ -10,7 +10,8 @@ use jaspe_scene::{DiskLoader, Severity, read};
 #[test]
 fn the_scenes_of_this_project_give_no_remark() {
     let found = scenes("scenes");
-    assert_eq!(found.is_empty(), !Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").exists());
+    let first = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/six-materials.sc");
+    assert_eq!(found.is_empty(), !first.exists());
     for path in found {
         let (_, diagnostics) = read(&path, &DiskLoader);
         assert!(diagnostics.is_empty(), "{}: {diagnostics:#?}", path.display());

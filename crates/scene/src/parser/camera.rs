@@ -240,6 +240,12 @@ fn normalize(v: [f64; 3]) -> [f64; 3] {
     if length > 0.0 { v.map(|x| x / length) } else { v }
 }
 
+/// All words of the block, for the test of the page on the format.
+#[cfg(test)]
+pub(super) fn words() -> impl Iterator<Item = &'static str> {
+    KEYS.iter().map(|key| key.name).chain(LENSES.iter().map(|lens| lens.name))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

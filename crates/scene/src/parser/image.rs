@@ -122,3 +122,10 @@ impl Parser<'_> {
         nearest
     }
 }
+
+/// All words of these blocks, for the test of the page on the format.
+#[cfg(test)]
+pub(super) fn words() -> impl Iterator<Item = &'static str> {
+    let keys = IMAGE.iter().chain(TRACE_DEPTHS).map(|key| key.name);
+    keys.chain(BACKGROUND.iter().map(|key| key.name))
+}

@@ -136,3 +136,10 @@ impl Parser<'_> {
         }
     }
 }
+
+/// All words of the block, for the test of the page on the format.
+#[cfg(test)]
+pub(super) fn words() -> impl Iterator<Item = &'static str> {
+    let keys = LIGHTS.iter().flat_map(|light| light.keys).map(|key| key.name);
+    keys.chain(LIGHTS.iter().map(|light| light.name)).chain(UNSUPPORTED.iter().copied())
+}

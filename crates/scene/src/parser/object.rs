@@ -324,3 +324,11 @@ pub(super) fn instance(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     }
     Ok(())
 }
+
+/// All words of these blocks, for the test of the page on the format.
+#[cfg(test)]
+pub(super) fn words() -> impl Iterator<Item = &'static str> {
+    let keys = TYPES.iter().flat_map(|object| object.keys).chain(&HEAD).map(|key| key.name);
+    let types = TYPES.iter().map(|object| object.name).chain(UNSUPPORTED.iter().copied());
+    keys.chain(types).chain(INSTANCE.iter().map(|key| key.name))
+}

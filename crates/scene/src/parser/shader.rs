@@ -346,3 +346,11 @@ impl Parser<'_> {
         Err(Failed)
     }
 }
+
+/// All words of the block, for the test of the page on the format.
+#[cfg(test)]
+pub(super) fn words() -> impl Iterator<Item = &'static str> {
+    let keys = SHADERS.iter().flat_map(|shader| shader.keys).map(|key| key.name);
+    let keys = keys.filter(|name| !name.starts_with("absorbtion"));
+    keys.chain(type_names()).chain(UNSUPPORTED.iter().copied())
+}

@@ -258,3 +258,23 @@ impl Parser<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_on_the_format_has_every_word() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/format.md");
+        let page = std::fs::read_to_string(path).expect("the page exists");
+        let is_word = |c: char| c.is_alphanumeric() || "-._".contains(c);
+        let written: std::collections::HashSet<&str> = page.split(|c| !is_word(c)).collect();
+        let statements = STATEMENTS.iter().map(|statement| statement.name);
+        let filters = FILTERS.iter().map(|(name, _)| *name);
+        let all = statements.chain(filters).chain(image::words()).chain(camera::words()).chain(light::words());
+        let all: Vec<&str> = all.chain(shader::words()).chain(object::words()).collect();
+        assert!(all.len() > 120, "{}", all.len());
+        let missing: Vec<&&str> = all.iter().filter(|word| !written.contains(**word)).collect();
+        assert!(missing.is_empty(), "docs/format.md lacks {missing:?}");
+    }
+}
