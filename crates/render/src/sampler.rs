@@ -25,6 +25,11 @@ impl SampleKey {
         sobol_pair(hash(self.pixel ^ hash(dimension.wrapping_mul(0x9e37_79b9))), self.index)
     }
 
+    /// The key of a sequence that all pixels share.
+    pub fn shared(index: u32, seed: u64) -> Self {
+        SampleKey { pixel: hash(seed as u32 ^ 0x5bf0_3635), index }
+    }
+
     /// Two independent uniform numbers in [0, 1), without stratification.
     #[inline]
     pub fn random_pair(&self, dimension: u32) -> [f32; 2] {

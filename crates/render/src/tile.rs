@@ -22,8 +22,10 @@ const WAVE: usize = 1024;
 /// Sums over the samples of one pixel.
 #[derive(Debug, Clone, Copy)]
 struct Accumulator {
-    /// Colour and coverage.
+    /// Colour and coverage, weighted.
     sum: [f32; 4],
+    /// Weights.
+    weight: f32,
     /// Brightness and its square, for the spread within the pixel.
     brightness: [f32; 2],
     count: u32,
@@ -32,7 +34,8 @@ struct Accumulator {
 }
 
 impl Accumulator {
-    const EMPTY: Accumulator = Accumulator { sum: [0.0; 4], brightness: [0.0; 2], count: 0, seen: Seen::NOTHING };
+    const EMPTY: Accumulator =
+        Accumulator { sum: [0.0; 4], weight: 0.0, brightness: [0.0; 2], count: 0, seen: Seen::NOTHING };
 
     fn add(&mut self, result: &SampleResult, weight: f32) {
         if self.count == 0 {
@@ -44,14 +47,15 @@ impl Accumulator {
         self.sum[1] += c.y * weight;
         self.sum[2] += c.z * weight;
         self.sum[3] += result.coverage * weight;
+        self.weight += weight;
         self.brightness[0] += brightness;
         self.brightness[1] += brightness * brightness;
         self.count += 1;
     }
 
     fn mean(&self) -> [f32; 4] {
-        let scale = 1.0 / self.count.max(1) as f32;
-        self.sum.map(|sum| sum * scale)
+        // Over the weights and not the count: where all samples agree, negative lobes leave no trace.
+        if self.weight > 0.0 { self.sum.map(|sum| sum / self.weight) } else { [0.0; 4] }
     }
 
     /// Standard deviation of the samples' brightness over their mean.

@@ -32,7 +32,7 @@ pub struct CompiledScene {
 /// What depends on the dialect.
 #[derive(Debug)]
 pub(crate) enum Meaning {
-    Sunflow { rules: Sunflow, camera: Camera, filter: FilterSampler },
+    Sunflow { rules: Sunflow, camera: Camera, filter: FilterSampler, jitter: bool },
     Report { rules: Report },
 }
 
@@ -77,9 +77,14 @@ impl CompiledScene {
     pub(crate) fn camera_sample(&self, x: u32, y: u32, index: u32, end: u32, seed: u64) -> (CameraSample, f32) {
         let key = SampleKey::new(x, y, index, seed);
         match &self.meaning {
-            Meaning::Sunflow { camera, filter, .. } => {
-                // A single sample stands for the pixel's centre, unless it is one of many for the lens.
-                let ([dx, dy], weight) = if end == 1 { ([0.0; 2], 1.0) } else { filter.sample(key.pair(0)) };
+            &Meaning::Sunflow { ref camera, ref filter, jitter, .. } => {
+                // A single sample stands for the pixel's centre. Several lie alike in all pixels, so that edges come
+                // out smooth; with `jitter`, every pixel has its own.
+                let ([dx, dy], weight) = match (end, jitter) {
+                    (1, _) => ([0.0; 2], 1.0),
+                    (_, false) => filter.sample(SampleKey::shared(index, seed).pair(0)),
+                    (_, true) => filter.sample(key.pair(0)),
+                };
                 let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
                 let ray = camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, lens);
                 (CameraSample { ray, key }, weight)
@@ -168,7 +173,8 @@ fn sunflow(scene: &Scene, camera: &CameraDescription, size: [u32; 2], diagnostic
         max_refraction: depth(scene.trace_depths.refraction),
     };
     let filter = FilterSampler::new(scene.image.filter.map_or(Filter::Box, |filter| filter.value));
-    Meaning::Sunflow { rules, camera: Camera::new(camera, size), filter }
+    let jitter = scene.image.jitter.is_some_and(|jitter| jitter.value);
+    Meaning::Sunflow { rules, camera: Camera::new(camera, size), filter, jitter }
 }
 
 /// A light in Sunflow's meaning; `None` for one that shines nowhere.
