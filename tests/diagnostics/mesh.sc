@@ -83,6 +83,7 @@ object {
   shader a
   type mesh
 # error: 3-3 the mesh announces 3 lines of `v`, found 2
+# label: [66] 1-1 the lines end here
   3 1
   v 0 0 0  0 0 1  0 0
   v 1 0 0  0 0 1  1 0

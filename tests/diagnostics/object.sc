@@ -11,7 +11,7 @@ object { shader a type sphere r 1 }
 # hint: types are `sphere`, `plane`, `box`, `generic-mesh`, `mesh` and `flat-mesh`
 object { shader a c 0 0 0 r 1 }
 # error: 27-32 unknown keyword `sphere` in `sphere`
-# hint: expected `type`, `name`, `noinstance`, `shader`, `shaders`, `modifier`, `modifiers`, `transform`, `accel`, `photons`, `c` or `r`
+# hint: expected `type`, `name`, `noinstance`, `shader`, `shaders`, `modifier`, `modifiers`, `transform`, `accel`, `c` or `r`
 object { shaders 2 a type sphere c 0 0 0 r 1 }
 # error: 18-19 `shaders` expects the number of names, found `-1`
 # hint: for example `shaders 2 red blue`

@@ -87,7 +87,7 @@ impl Diagnostic {
     }
 }
 
-/// All diagnostics of one run, in the order in which they were found.
+/// All diagnostics of one run. Those of the reader are ordered by place.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,

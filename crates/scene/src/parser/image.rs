@@ -3,6 +3,7 @@
 use std::fmt::Display;
 
 use super::block::{Grammar, Key};
+use super::value::shorten;
 use super::{Parsed, Parser};
 use crate::description::{Background, Color};
 use crate::diagnostic::Diagnostic;
@@ -42,11 +43,21 @@ const IMAGE: &[Key<()>] = &[
         Ok(())
     }),
     // What follows says how Sunflow works, not what the picture looks like.
-    Key::new("sampler", "sampler bucket", |p, (), _| p.word("a sampler").map(drop)),
+    Key::new("sampler", "sampler bucket", sampler),
     Key::new("show-aa", "show-aa false", |p, (), _| p.boolean().map(drop)),
     Key::new("cache", "cache false", |p, (), _| p.boolean().map(drop)),
     Key::new("output", "output picture.png", |p, (), _| p.word("a file name").map(drop)),
 ];
+
+/// The adaptive sampler that is ours too is called `bucket`.
+fn sampler(parser: &mut Parser<'_>, (): &mut (), _: Span) -> Parsed<()> {
+    let sampler = parser.word("a sampler")?;
+    if sampler.value != "bucket" {
+        let message = format!("skipped: sampler `{}` is not supported yet", shorten(&sampler.value));
+        parser.diagnostics.push(Diagnostic::warning(sampler.span, message));
+    }
+    Ok(())
+}
 
 pub(super) fn image(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     parser.open("image")?;

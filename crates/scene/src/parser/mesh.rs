@@ -27,6 +27,8 @@ enum Attribute<const N: usize> {
 #[derive(Debug)]
 struct List<T> {
     values: Vec<T>,
+    /// Numbers that are left over at the end.
+    rest: usize,
     /// The cursor before the first number.
     start: Lexer,
     /// The keyword.
@@ -43,33 +45,45 @@ pub(super) struct MeshDraft {
     face_shaders: Option<List<u32>>,
 }
 
+impl MeshDraft {
+    /// How many points there are, as far as is known.
+    fn point_count(&self) -> usize {
+        self.points.as_ref().map_or(0, |list| list.values.len())
+    }
+
+    /// How many triangles there are, as far as is known.
+    fn triangle_count(&self) -> usize {
+        self.triangles.as_ref().map_or(0, |list| list.values.len())
+    }
+}
+
 /// The keywords of `generic-mesh`.
 pub(super) const KEYS: &[Key<Draft>] = &[
     Key::new("points", "points 3 0 0 0 1 0 0 0 1 0", |p, d, key| {
         let count = p.count()?;
         let list = p.list(key, count, number::float::<f32>)?;
-        p.check_count(&list, count, 3)?;
+        p.check_count(&list, count)?;
         d.mesh.points = Some(list);
         Ok(())
     }),
     Key::new("triangles", "triangles 1 0 1 2", |p, d, key| {
         let count = p.count()?;
         let list = p.list(key, count, number::index)?;
-        p.check_count(&list, count, 3)?;
+        p.check_count(&list, count)?;
         d.mesh.triangles = Some(list);
         Ok(())
     }),
     Key::new("normals", "normals none", |p, d, key| {
-        d.mesh.normals = p.attribute(key)?;
+        d.mesh.normals = p.attribute(key, &d.mesh)?;
         Ok(())
     }),
     Key::new("uvs", "uvs none", |p, d, key| {
-        d.mesh.uvs = p.attribute(key)?;
+        d.mesh.uvs = p.attribute(key, &d.mesh)?;
         Ok(())
     }),
     Key::new("face_shaders", "face_shaders 0 0 1", |p, d, key| {
-        let List { values, start, key } = p.list::<u32, 1>(key, 0, number::index)?;
-        d.mesh.face_shaders = Some(List { values: values.into_iter().flatten().collect(), start, key });
+        let List { values, rest, start, key } = p.list::<u32, 1>(key, d.mesh.triangle_count(), number::index)?;
+        d.mesh.face_shaders = Some(List { values: values.into_iter().flatten().collect(), rest, start, key });
         Ok(())
     }),
 ];
@@ -106,8 +120,7 @@ impl Parser<'_> {
         }
     }
 
-    /// As many numbers as there are. A number short of a multiple of `N` is an error, except that `expected` says
-    /// more than the file holds anyway.
+    /// As many numbers as there are; room is made for as many tuples as are expected.
     fn list<T: Number, const N: usize>(
         &mut self,
         key: Span,
@@ -120,7 +133,7 @@ impl Parser<'_> {
         let mut values: Vec<[T; N]> = Vec::with_capacity(expected.min(start.remaining(&bytes) / (2 * N) + 1));
         let mut lexer = start;
         let mut unusable = 0_usize;
-        let (end, left) = 'tuples: loop {
+        let (end, rest) = 'tuples: loop {
             let mut tuple = [T::default(); N];
             for (i, slot) in tuple.iter_mut().enumerate() {
                 let before = lexer;
@@ -138,15 +151,7 @@ impl Parser<'_> {
         if unusable > 0 {
             return Err(self.unusable(start, unusable));
         }
-        let list = List { values, start, key };
-        if left > 0 && expected == 0 {
-            let found = self.peek();
-            return Err(self.expected(&format!("a multiple of {N} numbers"), found));
-        }
-        if left > 0 {
-            return Err(self.wrong_count(&list, expected * N, list.values.len() * N + left));
-        }
-        Ok(list)
+        Ok(List { values, rest, start, key })
     }
 
     /// A list ends at a keyword or a brace; anything that looks like a number is one gone wrong.
@@ -179,11 +184,11 @@ impl Parser<'_> {
         Failed
     }
 
-    /// Compares a list with the number of entries of `N` numbers that was announced.
-    fn check_count<T: Number, const N: usize>(&mut self, list: &List<[T; N]>, count: usize, size: usize) -> Parsed<()> {
-        match list.values.len() == count {
-            true => Ok(()),
-            false => Err(self.wrong_count(list, count.saturating_mul(size), list.values.len() * size)),
+    /// Compares a list with the number of tuples that was announced.
+    fn check_count<T: Number, const N: usize>(&mut self, list: &List<[T; N]>, count: usize) -> Parsed<()> {
+        match (list.values.len() == count, list.rest) {
+            (true, 0) => Ok(()),
+            _ => Err(self.wrong_count(list, count.saturating_mul(N), list.values.len() * N + list.rest)),
         }
     }
 
@@ -213,12 +218,12 @@ impl Parser<'_> {
     }
 
     /// The value of `normals` or `uvs`.
-    fn attribute<const N: usize>(&mut self, key: Span) -> Parsed<Attribute<N>> {
+    fn attribute<const N: usize>(&mut self, key: Span, mesh: &MeshDraft) -> Parsed<Attribute<N>> {
         let choices = [("none", 0), ("vertex", 1), ("facevarying", 2)];
         Ok(match self.choice("a kind of vertex data", &choices)?.value {
             0 => Attribute::None,
-            1 => Attribute::Vertex(self.list(key, 0, number::float::<f32>)?),
-            _ => Attribute::FaceVarying(self.list(key, 0, number::float::<f32>)?),
+            1 => Attribute::Vertex(self.list(key, mesh.point_count(), number::float::<f32>)?),
+            _ => Attribute::FaceVarying(self.list(key, 3 * mesh.triangle_count(), number::float::<f32>)?),
         })
     }
 }
@@ -256,15 +261,19 @@ pub(super) fn legacy(parser: &mut Parser<'_>, draft: &mut Draft, key: Span) -> P
     for (what, expected, found) in [("v", vertex_count, points.len()), ("t", triangle_count, triangles.len())] {
         if expected != found {
             let message = format!("the mesh announces {expected} lines of `{what}`, found {found}");
+            let diagnostic = Diagnostic::error(key, message);
             parser.failed_at = parser.lexer.position() as u32;
-            parser.diagnostics.push(Diagnostic::error(key, message));
+            parser.diagnostics.push(match parser.peek() {
+                Some(end) => diagnostic.label(parser.span(end), "the lines end here"),
+                None => diagnostic,
+            });
             return Err(Failed);
         }
     }
-    draft.mesh.points = Some(List { values: points, start, key });
-    draft.mesh.triangles = Some(List { values: triangles, start: triangles_start, key });
-    draft.mesh.normals = Attribute::Vertex(List { values: normals, start, key });
-    draft.mesh.uvs = Attribute::Vertex(List { values: uvs, start, key });
+    draft.mesh.points = Some(List { values: points, rest: 0, start, key });
+    draft.mesh.triangles = Some(List { values: triangles, rest: 0, start: triangles_start, key });
+    draft.mesh.normals = Attribute::Vertex(List { values: normals, rest: 0, start, key });
+    draft.mesh.uvs = Attribute::Vertex(List { values: uvs, rest: 0, start, key });
     Ok(())
 }
 
@@ -344,8 +353,8 @@ impl Parser<'_> {
             Attribute::Vertex(list) => (list, "vertex", points),
             Attribute::FaceVarying(list) => (list, "facevarying", 3 * triangles),
         };
-        if list.values.len() != needed {
-            let (needed, found) = (needed * N, list.values.len() * N);
+        if list.values.len() != needed || list.rest > 0 {
+            let (needed, found) = (needed * N, list.values.len() * N + list.rest);
             let message = format!("`{what} {kind}` needs {needed} numbers in this mesh, found {found}");
             let hint = match kind {
                 "vertex" => format!("`vertex` means {N} numbers for each of the {points} points"),

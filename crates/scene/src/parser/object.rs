@@ -33,7 +33,7 @@ struct ObjectType {
     build: fn(&mut Parser<'_>, &mut Draft, &Outcome, Span) -> Option<Geometry>,
 }
 
-const HEAD: [Key<Draft>; 10] = [
+const HEAD: [Key<Draft>; 9] = [
     Key::new("type", "type sphere", |p, d, _| {
         d.has_type = true;
         p.word("an object type").map(drop)
@@ -74,7 +74,6 @@ const HEAD: [Key<Draft>; 10] = [
         Ok(())
     }),
     Key::new("accel", "accel bih", |p, _, _| p.word("the name of an acceleration structure").map(drop)),
-    Key::new("photons", "photons true", |p, _, _| p.boolean().map(drop)),
 ];
 
 const TYPES: &[ObjectType] = &[
