@@ -1,7 +1,8 @@
 //! Where text comes from: files read through a [`Loader`], and spans into them.
 
 use std::collections::HashMap;
-use std::io;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -119,7 +120,21 @@ impl Loader for DiskLoader {
         if metadata.len() > Self::MAX_BYTES {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "larger than 4 GiB"));
         }
-        std::fs::read(path).map(Arc::from)
+        let mut file = File::open(path)?;
+        // Straight into its place: a `Vec` would have to be copied there, and large scenes be in memory twice.
+        let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, metadata.len() as usize).collect();
+        let place = Arc::get_mut(&mut bytes).expect("nobody else has it yet");
+        let mut filled = 0;
+        loop {
+            match file.read(&mut place[filled..]) {
+                Ok(0) => break,
+                Ok(count) => filled += count,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        // Shorter than announced: it has just been cut, or it is a file of the system without a size.
+        if filled == bytes.len() && filled > 0 { Ok(bytes) } else { std::fs::read(path).map(Arc::from) }
     }
 }
 
@@ -141,5 +156,38 @@ impl MemoryLoader {
 impl Loader for MemoryLoader {
     fn load(&self, path: &Path) -> io::Result<Arc<[u8]>> {
         self.files.get(path).cloned().ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "no such file in memory"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_read_whole() {
+        let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/source.rs");
+        let bytes = DiskLoader.load(&here).expect("this file exists");
+        assert_eq!(*bytes, *std::fs::read(&here).expect("this file exists"));
+    }
+
+    #[test]
+    fn folders_and_missing_files_are_refused() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+        assert_eq!(DiskLoader.load(folder).expect_err("a folder").kind(), io::ErrorKind::InvalidInput);
+        let missing = folder.join("no such file");
+        assert_eq!(DiskLoader.load(&missing).expect_err("missing").kind(), io::ErrorKind::NotFound);
+    }
+
+    #[test]
+    fn positions_count_lines_and_characters_from_one() {
+        let mut sources = Sources::default();
+        let file = sources.add("a.sc".into(), Arc::from("é x\r\n\u{fc} y".as_bytes()));
+        let at = |start: u32| sources.position(Span { file, start, end: start }).map(|p| (p.line, p.column));
+        assert_eq!(at(0), Some((1, 1)));
+        assert_eq!(at(3), Some((1, 3)));
+        assert_eq!(at(6), Some((2, 1)));
+        assert_eq!(at(9), Some((2, 3)));
+        assert_eq!(at(1000), Some((2, 4)));
+        assert_eq!(sources.position(Span { file: 7, start: 0, end: 0 }), None);
     }
 }
