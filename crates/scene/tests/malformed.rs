@@ -128,7 +128,7 @@ fn mutated_scenes_are_survived() {
     for base in &bases {
         // The first pages of the large ones are as good as the whole.
         let base = &base[..base.len().min(4000)];
-        for _ in 0..40 {
+        for _ in 0..60 {
             let bytes = mutate(base, &mut random);
             let what = format!("mutation {cases}: {}", String::from_utf8_lossy(&bytes));
             let (_, diagnostics) = check(&what, &bytes, &MemoryLoader::default());
