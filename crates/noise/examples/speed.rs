@@ -38,8 +38,8 @@ fn main() {
     let (x, y, z) = (coordinates(), coordinates(), coordinates());
     let mut values = vec![0.0; COUNT];
     println!(
-        "{:10} {:8} {:>9} {:>9} {:>9} {:>9} {:>9}",
-        "basis", "level", "space", "plane", "sum of 7", "of 64", "single"
+        "{:10} {:8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}",
+        "basis", "level", "space", "plane", "sum of 7", "of 64", "single", "5 octaves"
     );
     for &basis in Basis::ALL {
         let noise = Noise::new(basis, 0);
@@ -57,11 +57,17 @@ fn main() {
             });
             let single = time(COUNT, || {
                 for i in 0..COUNT {
-                    values[i] = noise.value(black_box([x[i], y[i], z[i]]));
+                    values[i] = noise.at([black_box(x[i]), black_box(y[i]), black_box(z[i])]);
+                }
+            });
+            let five = Sum::new(noise.clone(), Combine::Plain, 5);
+            let single_sum = time(COUNT, || {
+                for i in 0..COUNT {
+                    values[i] = five.at([black_box(x[i]), black_box(y[i]), black_box(z[i])]);
                 }
             });
             println!(
-                "{:10} {:8} {space:9.3} {plane:9.3} {octave:9.3} {small:9.3} {single:9.3}",
+                "{:10} {:8} {space:9.3} {plane:9.3} {octave:9.3} {small:9.3} {single:9.3} {single_sum:9.3}",
                 basis.name(),
                 level.name()
             );

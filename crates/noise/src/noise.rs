@@ -87,6 +87,16 @@ impl Noise {
         self.fill_at(simd::level(), points, values);
     }
 
+    /// The value at one point in single precision, with the machine's vector instructions.
+    #[inline]
+    pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
+        let mut value = None;
+        if D == 3 && self.has_kernel() {
+            value = simd::improved_at(simd::level(), &self.tables, [point[0], point[1], point[D - 1]]);
+        }
+        value.unwrap_or_else(|| self.value(point))
+    }
+
     /// [`Noise::fill`] with the instructions of a level, at most those of the machine. For tests and measurements.
     ///
     /// # Panics
@@ -107,12 +117,60 @@ impl Noise {
         values: &mut [f32],
     ) {
         let mut done = 0;
-        if self.basis == Basis::Improved && self.period == [0.0; 3] {
+        if self.has_kernel() {
             done = simd::sum_improved(level, &self.tables, terms, points, values);
         }
-        if done < values.len() {
-            simd::map_at(level, kernel, points.map(|coordinates| &coordinates[done..]), &mut values[done..]);
+        if done == values.len() {
+            return;
         }
+        let points = points.map(|coordinates| &coordinates[done..]);
+        let values = &mut values[done..];
+        if values.len() <= simd::FEW {
+            for (i, value) in values.iter_mut().enumerate() {
+                let sum = self.sum_at(level, terms, points.map(|coordinates| coordinates[i]));
+                *value = sum.unwrap_or_else(|| kernel.run(points.map(|coordinates| coordinates[i])));
+            }
+        } else {
+            simd::map_at(level, kernel, points, values);
+        }
+    }
+
+    /// Whether this is the noise that the kernels made by hand are for.
+    #[inline]
+    fn has_kernel(&self) -> bool {
+        self.basis == Basis::Improved && self.period == [0.0; 3]
+    }
+
+    /// The sum at one point by the kernel made by hand, if there is one, or with its octaves in the lanes of vectors, if
+    /// there are several (and no period, which would differ from octave to octave).
+    pub(crate) fn sum_at<const D: usize>(&self, level: Level, terms: &Terms, point: [f32; D]) -> Option<f32> {
+        if D == 3 && self.has_kernel() && level >= Level::Avx2 {
+            return simd::sum_improved_at(level, &self.tables, terms, [point[0], point[1], point[D - 1]]);
+        }
+        if terms.octaves < 2 || self.period != [0.0; 3] || level == Level::Scalar {
+            return None;
+        }
+        const LANES: usize = 16;
+        let (mut frequency, mut amplitude, mut sum) = (1.0, 1.0, 0.0);
+        for start in (0..terms.octaves).step_by(LANES) {
+            let count = LANES.min((terms.octaves - start) as usize);
+            let mut scaled = [[0.0; LANES]; D];
+            for lane in 0..count {
+                for (scaled, coordinate) in scaled.iter_mut().zip(point) {
+                    scaled[lane] = coordinate * frequency;
+                }
+                frequency *= terms.lacunarity;
+            }
+            let mut noises = [0.0; LANES];
+            // (Whole vectors: what fills them up costs nothing.)
+            let padded = if level == Level::Avx512 { LANES } else { count.next_multiple_of(8) };
+            simd::map_at(level, self, scaled.each_ref().map(|axis| &axis[..padded]), &mut noises[..padded]);
+            for noise in &noises[..count] {
+                sum += amplitude * if terms.absolute { noise.abs() } else { *noise };
+                amplitude *= terms.gain;
+            }
+        }
+        Some(sum)
     }
 
     /// The value at a point that has been multiplied by `frequency`, which lengthens the period (counted in cells).

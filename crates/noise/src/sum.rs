@@ -105,18 +105,26 @@ impl Sum {
         self.fill_at(simd::level(), points, values);
     }
 
+    /// The value at one point in single precision, with the machine's vector instructions.
+    pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
+        self.noise.sum_at(simd::level(), &self.terms(), point).unwrap_or_else(|| self.value(point))
+    }
+
     /// [`Sum::fill`] with the instructions of a level, at most those of the machine. For tests and measurements.
     ///
     /// # Panics
     /// When the slices differ in length.
     pub fn fill_at<const D: usize>(&self, level: Level, points: [&[f32]; D], values: &mut [f32]) {
-        let terms = Terms {
+        self.noise.sum_with(self, level, &self.terms(), points, values);
+    }
+
+    fn terms(&self) -> Terms {
+        Terms {
             octaves: self.octaves,
             absolute: self.combine == Combine::Absolute,
             lacunarity: Self::LACUNARITY as f32,
             gain: Self::GAIN as f32,
-        };
-        self.noise.sum_with(self, level, &terms, points, values);
+        }
     }
 }
 

@@ -111,6 +111,24 @@ fn numbers_and_elementary_functions_have_the_same_bits_at_every_level() {
 }
 
 #[test]
+fn single_points_have_the_bits_of_batches() {
+    let [x, y, z] = [6, 7, 8].map(|salt| coordinates(2000, salt));
+    for &basis in Basis::ALL {
+        for period in [[0; 3], [5, 0, 9]] {
+            let noise = Noise::new(basis, 2).with_period(period).unwrap();
+            let sum = Sum::new(noise.clone(), Combine::Absolute, 20);
+            for i in 0..2000 {
+                let point = [x[i], y[i], z[i]];
+                assert!(same(noise.at(point), noise.value(point)), "{basis:?} at {point:?}");
+                assert!(same(noise.at([x[i], y[i]]), noise.value([x[i], y[i]])), "{basis:?} at {point:?}");
+                assert!(same(sum.at(point), sum.value(point)), "{basis:?} at {point:?}");
+                assert!(same(sum.at([x[i], y[i]]), sum.value([x[i], y[i]])), "{basis:?} at {point:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn levels_have_names_and_stay_within_the_machines() {
     for level in Level::ALL {
         assert_eq!(Level::from_name(level.name()), Some(level));

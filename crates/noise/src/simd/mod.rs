@@ -58,6 +58,7 @@ impl Level {
 }
 
 /// The highest level of this machine.
+#[inline]
 pub fn machine_level() -> Level {
     static LEVEL: OnceLock<Level> = OnceLock::new();
     *LEVEL.get_or_init(detect)
@@ -65,6 +66,7 @@ pub fn machine_level() -> Level {
 
 /// The level in use: the machine's, capped by the environment variable `JASPE_SIMD` (a level's name; other words are
 /// ignored), which is read once.
+#[inline]
 pub fn level() -> Level {
     static LEVEL: OnceLock<Level> = OnceLock::new();
     *LEVEL.get_or_init(|| {
@@ -151,17 +153,40 @@ pub(crate) fn sum_improved<const D: usize>(
     }
     let points = [points[0], points[1], points[D - 1]];
     match level.min(machine_level()) {
+        _ if values.len() <= FEW => 0,
         // SAFETY, for both: the machine has the instructions, `machine_level` says.
         #[cfg(target_arch = "x86_64")]
         Level::Avx2 => unsafe { avx2::improved::sum(tables, terms, points, values) },
         #[cfg(target_arch = "x86_64")]
         Level::Avx512 => unsafe { avx512::improved::sum(tables, terms, points, values) },
-        _ => {
-            let _ = (tables, terms, points);
-            0
-        }
+        _ => 0,
     }
 }
+
+/// The sum of improved noise at one point, if there is a kernel made by hand. Same bits as the generic evaluation.
+pub(crate) fn sum_improved_at(level: Level, tables: &Tables, terms: &Terms, [x, y, z]: [f32; 3]) -> Option<f32> {
+    match level.min(machine_level()) {
+        // SAFETY: the machine has the instructions, `machine_level` says.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 | Level::Avx512 => Some(unsafe { avx2::single::sum(tables, terms, x, y, z) }),
+        _ => None,
+    }
+}
+
+/// Improved noise at one point, if there is a kernel made by hand. Same bits as the generic evaluation.
+#[inline(always)]
+pub(crate) fn improved_at(level: Level, tables: &Tables, [x, y, z]: [f32; 3]) -> Option<f32> {
+    match level.min(machine_level()) {
+        // SAFETY: the machine has the instructions, `machine_level` says.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 | Level::Avx512 => Some(unsafe { avx2::single::improved(tables, x, y, z) }),
+        _ => None,
+    }
+}
+
+/// So few points are evaluated one by one, with their corners or octaves in the lanes, rather than in a vector that they
+/// would not fill.
+pub(crate) const FEW: usize = 3;
 
 fn map_scalar<K: Kernel<D>, const D: usize>(kernel: &K, inputs: [&[f32]; D], outputs: &mut [f32]) {
     for (i, output) in outputs.iter_mut().enumerate() {

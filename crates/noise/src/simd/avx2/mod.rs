@@ -1,6 +1,7 @@
 //! Eight lanes: AVX2 and FMA. Tables are read by gathers.
 
 pub(super) mod improved;
+pub(super) mod single;
 
 use std::arch::x86_64::*;
 use std::ops::{Neg, Not};
