@@ -18,7 +18,13 @@ pub struct Texture {
     scale: f64,
     written_space: Option<Space>,
     space: Space,
+    as_figures: bool,
 }
+
+/// How far the noise of three dimensions is moved along each axis. Gradient noise is poorer on the planes of its lattice,
+/// above all where the lattices of all octaves meet: a floor at y = 0 would show straight streaks. With a third of a
+/// cell, every octave has those planes a third of its own cell away, since 2^k / 3 is never near a whole number.
+const OFFSET: f64 = 1.0 / 3.0;
 
 /// Points that are worked on at a time; their coordinates in texture space lie on the stack.
 const BLOCK: usize = 256;
@@ -44,6 +50,7 @@ impl Texture {
             scale: args.float("scale"),
             written_space: args.space(),
             space: args.space().unwrap_or(Space::Local),
+            as_figures: false,
         })
     }
 
@@ -67,8 +74,10 @@ impl Texture {
         self.material.figure_space()
     }
 
-    /// The same texture as the report's figures have it: in [`Texture::figure_space`], unless `space` was given.
+    /// The same texture as the report's figures have it: in [`Texture::figure_space`], unless `space` was given, and
+    /// with the noise where they had it, at the cost of streaks on planes through the origin.
     pub fn in_figure_space(mut self) -> Self {
+        self.as_figures = true;
         self.space = self.written_space.unwrap_or(self.figure_space());
         self
     }
@@ -97,8 +106,9 @@ impl Texture {
     #[inline(always)]
     pub fn value<R: Real, const D: usize>(&self, point: [R; D]) -> R {
         let factor = R::constant(self.factor());
-        let point = point.map(|coordinate| coordinate * factor);
-        self.material.shape(point[0], self.sum.value(point))
+        let scaled = point.map(|coordinate| coordinate * factor);
+        let moved = scaled.map(|coordinate| coordinate + R::constant(self.offset::<D>()));
+        self.material.shape(scaled[0], self.sum.value(moved))
     }
 
     /// The coefficients at many points of the texture's space: one slice of coordinates per axis (two for uv, three for
@@ -119,19 +129,22 @@ impl Texture {
         for coordinates in points {
             assert_eq!(coordinates.len(), coefficients.len(), "all slices have the same length");
         }
-        let factor = self.factor() as f32;
-        let mut scaled = [[0.0; BLOCK]; D];
+        let (factor, offset) = (self.factor() as f32, self.offset::<D>() as f32);
+        let mut along = [0.0; BLOCK];
+        let mut moved = [[0.0; BLOCK]; D];
         let mut sums = [0.0; BLOCK];
         for (block, coefficients) in coefficients.chunks_mut(BLOCK).enumerate() {
             let (start, count) = (block * BLOCK, coefficients.len());
-            for axis in 0..D {
+            let along = &mut along[..count];
+            for axis in (0..D).rev() {
                 let coordinates = &points[axis][start..start + count];
-                for (scaled, coordinate) in scaled[axis].iter_mut().zip(coordinates) {
-                    *scaled = coordinate * factor;
+                for ((along, moved), coordinate) in along.iter_mut().zip(&mut moved[axis]).zip(coordinates) {
+                    *along = coordinate * factor;
+                    *moved = *along + offset;
                 }
             }
-            self.sum.fill_at(level, scaled.each_ref().map(|axis| &axis[..count]), &mut sums[..count]);
-            self.material.shape_all(level, [&scaled[0][..count], &sums[..count]], coefficients);
+            self.sum.fill_at(level, moved.each_ref().map(|axis| &axis[..count]), &mut sums[..count]);
+            self.material.shape_all(level, [along, &sums[..count]], coefficients);
         }
     }
 
@@ -161,6 +174,12 @@ impl Texture {
                 *color = self.color(coefficient);
             }
         }
+    }
+
+    /// What is added to each coordinate for the noise. Two dimensions are left alone: they are no slice of a solid.
+    #[inline(always)]
+    fn offset<const D: usize>(&self) -> f64 {
+        if D == 2 || self.as_figures { 0.0 } else { OFFSET }
     }
 
     /// What a coordinate is multiplied by, a number of single precision.

@@ -115,20 +115,43 @@ fn the_shapes_are_those_of_the_figures() {
     let point = [0.31f32, -0.52, 0.77];
     for declaration in Texture::ALL {
         for (sum_name, plain) in [("absolute", false), ("plain", true)] {
-            let texture = Texture::build(declaration.name, &[("sum", Value::Choice(sum_name))]).unwrap();
-            let scaled = point.map(|coordinate| coordinate * texture.frequencies().local);
-            let sum = f64::from(texture.sum().value(scaled));
-            let along = f64::from(scaled[0]) + sum;
-            let expected = match (declaration.name, plain) {
-                ("marble", false) => along.cos(),
-                ("marble", true) => along.sin(),
-                ("wood", _) => (15.0 * sum).rem_euclid(1.0),
-                _ => sum,
-            };
-            let found = f64::from(texture.value(point));
-            assert!((found - expected).abs() < 2e-6, "{} {sum_name}: {found}, {expected}", declaration.name);
+            let args = [("sum", Value::Choice(sum_name)), ("space", Value::Choice("local"))];
+            let moved = Texture::build(declaration.name, &args).unwrap();
+            for (texture, offset) in [(moved.clone().in_figure_space(), 0.0), (moved, 1.0 / 3.0)] {
+                let scaled = point.map(|coordinate| coordinate * texture.frequencies().local);
+                let sum = f64::from(texture.sum().value(scaled.map(|coordinate| coordinate + offset)));
+                let along = f64::from(scaled[0]) + sum;
+                let expected = match (declaration.name, plain) {
+                    ("marble", false) => along.cos(),
+                    ("marble", true) => along.sin(),
+                    ("wood", _) => (15.0 * sum).rem_euclid(1.0),
+                    _ => sum,
+                };
+                let found = f64::from(texture.value(point));
+                assert!((found - expected).abs() < 2e-6, "{} {sum_name}: {found}, {expected}", declaration.name);
+            }
         }
     }
+}
+
+/// On a plane of its lattice, gradient noise runs in streaks along the axes. A floor at y = 0 must not show them: its
+/// mean is that of any other plane, and so is the share of points where the noise vanishes.
+#[test]
+fn a_plane_through_the_origin_is_like_any_other() {
+    let statistics = |y: f32| {
+        let texture = Texture::build("organic", &[("scale", Value::Float(0.37))]).unwrap();
+        let coordinates: Vec<[f32; 2]> =
+            (0..40_000).map(|i| [(i % 200) as f32 * 0.0731, (i / 200) as f32 * 0.0731]).collect();
+        let axis = |k: usize| coordinates.iter().map(|c| c[k]).collect::<Vec<f32>>();
+        let mut values = vec![0.0; coordinates.len()];
+        texture.evaluate([&axis(0), &vec![y; coordinates.len()], &axis(1)], &mut values);
+        let mean = values.iter().sum::<f32>() / values.len() as f32;
+        [mean, values.iter().filter(|value| **value < 0.1).count() as f32 / values.len() as f32]
+    };
+    let [mean, veins] = statistics(0.0);
+    let [other_mean, other_veins] = statistics(0.519);
+    assert!((mean - other_mean).abs() < 0.02, "{mean}, {other_mean}");
+    assert!((veins - other_veins).abs() < 0.006, "{veins}, {other_veins}");
 }
 
 /// The distributions over a sphere that the reference description of the original system states: material, octaves, mean,
