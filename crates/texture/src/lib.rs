@@ -17,8 +17,8 @@
 //!
 //! Points are given in the texture's [`Space`] ([`Texture::space`]) and in its units: the caller transforms them there, the
 //! texture scales them. With the texture's `frequency` and `scale`, the noise is evaluated at
-//! X = frequency · point / scale (moved by a third of a cell in three dimensions, so that no plane of the scene is one of
-//! the noise's lattice; [`Texture::in_figure_space`] is without). Each material turns X and the noise sum T(X) into a
+//! X = frequency · point / scale (moved by a third of a cell in three dimensions, so that no floor or wall of a scene lies
+//! in the noise's lattice; wood needs the lattice point at its centre, and [`Texture::in_figure_space`] is without). Each material turns X and the noise sum T(X) into a
 //! coefficient w, and clamp(w · initial + (1 − w) · final) is the colour. Colours are display-encoded, and mixed so, as the report's figures
 //! were; who needs light decodes the result.
 

@@ -21,11 +21,6 @@ pub struct Texture {
     as_figures: bool,
 }
 
-/// How far the noise of three dimensions is moved along each axis. Gradient noise is poorer on the planes of its lattice,
-/// above all where the lattices of all octaves meet: a floor at y = 0 would show straight streaks. With a third of a
-/// cell, every octave has those planes a third of its own cell away, since 2^k / 3 is never near a whole number.
-const OFFSET: f64 = 1.0 / 3.0;
-
 /// Points that are worked on at a time; their coordinates in texture space lie on the stack.
 const BLOCK: usize = 256;
 
@@ -176,10 +171,10 @@ impl Texture {
         }
     }
 
-    /// What is added to each coordinate for the noise. Two dimensions are left alone: they are no slice of a solid.
+    /// What is added to each coordinate for the noise. Two dimensions are left alone: they have no planes.
     #[inline(always)]
     fn offset<const D: usize>(&self) -> f64 {
-        if D == 2 || self.as_figures { 0.0 } else { OFFSET }
+        if D == 2 || self.as_figures { 0.0 } else { self.material.offset() }
     }
 
     /// What a coordinate is multiplied by, a number of single precision.

@@ -26,6 +26,12 @@ pub(crate) trait Kind: Sized {
     /// The part of the light that it mirrors.
     const REFLECTION: f32 = 0.0;
 
+    /// How far the noise of three dimensions is moved along each axis. Gradient noise is poorer on the planes of its
+    /// lattice, above all where the lattices of all octaves meet: a floor at y = 0 would show straight streaks. With a
+    /// third of a cell, every octave has those planes a third of its own cell away, since 2^k / 3 is never near a whole
+    /// number.
+    const OFFSET: f64 = 1.0 / 3.0;
+
     /// From arguments that are already checked against the declaration.
     fn build(args: &Args) -> Self;
 
@@ -69,6 +75,11 @@ macro_rules! materials {
 
             pub(crate) fn reflection(&self) -> f32 {
                 match self { $(Material::$kind(_) => $module::$kind::REFLECTION,)* }
+            }
+
+            #[inline(always)]
+            pub(crate) fn offset(&self) -> f64 {
+                match self { $(Material::$kind(_) => $module::$kind::OFFSET,)* }
             }
 
             pub(crate) fn coefficient_range(&self, sum: &Sum) -> [f32; 2] {

@@ -21,6 +21,8 @@ impl Kind for Wood {
     // 0.3 · π is 0.94.
     const FREQUENCIES: Frequencies = Frequencies { local: 0.3, world: 0.3, uv: 1.0 };
     const REFLECTION: f32 = 0.1;
+    /// The rings gather around the lattice point at the origin, where the noise of all octaves vanishes.
+    const OFFSET: f64 = 0.0;
 
     fn build(_: &Args) -> Self {
         Wood
