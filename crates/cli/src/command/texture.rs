@@ -66,7 +66,7 @@ fn factor(text: &str) -> Result<f64, String> {
 const SAMPLE_COUNT: usize = 3;
 
 /// Not a whole number of cells at any material's frequency: there all gradient noises vanish.
-const SLICE: f32 = 0.35;
+const SLICE: f64 = 0.35;
 
 impl Texture {
     /// Draws and writes.
@@ -117,7 +117,7 @@ impl Texture {
         let mut film = Film::new(self.size[0], self.size[1], Encoding::Linear);
         let plane = Plane::new(material.space(), self.size, self.scale);
         let x: Vec<f32> = (0..columns).map(|i| plane.x(i)).collect();
-        let z = vec![SLICE; columns];
+        let z = vec![(SLICE / self.scale) as f32; columns];
         let mut colors = vec![[0.0; 3]; columns];
         for (row, pixels) in film.pixels.chunks_exact_mut(width).enumerate() {
             for j in 0..SAMPLE_COUNT {
