@@ -108,10 +108,8 @@ impl<R: Real, const N: usize> Real for Dual<R, N> {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        // At zero, where the root has no slope, the derivative is given as 0.
         let root = self.value.sqrt();
-        let positive = R::constant(0.0).less(root);
-        self.with(root, |a| R::select(positive, a / (root + root), R::constant(0.0)))
+        self.with(root, |a| a / (root + root))
     }
     #[inline(always)]
     fn less(self, other: Self) -> R::Mask {

@@ -1,4 +1,0 @@
-% Organic on a sphere, a knot and a cube.
-
-shader { name shown type organic }
-include "include/studio.sc"

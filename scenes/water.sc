@@ -1,4 +1,0 @@
-% Water on a sphere, a knot and a cube.
-
-shader { name shown type water }
-include "include/studio.sc"

@@ -1,4 +1,0 @@
-% Wood on a sphere, a knot and a cube.
-
-shader { name shown type wood }
-include "include/studio.sc"

@@ -1,0 +1,5 @@
+% Fire on the unit sphere.
+include ../../../stage/light.sc
+include ../../../stage/camera.sc
+shader { name m type fire }
+object { shader m type sphere }

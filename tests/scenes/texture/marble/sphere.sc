@@ -1,0 +1,5 @@
+% Marble on the unit sphere.
+include ../../../stage/light.sc
+include ../../../stage/camera.sc
+shader { name m type marble }
+object { shader m type sphere }

@@ -1,0 +1,5 @@
+% Organic on a turned box.
+include ../../../stage/light.sc
+include ../../../stage/camera.sc
+shader { name m type organic }
+object { shader m transform { scaleu 1.5 rotatey 25 } type box }

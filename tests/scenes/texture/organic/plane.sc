@@ -1,0 +1,5 @@
+% Organic on a plane that reaches the horizon.
+include ../../../stage/light.sc
+include ../../../stage/camera.sc
+shader { name m type organic }
+object { shader m type plane p 0 -1 0 n 0 1 0 }

@@ -1,0 +1,5 @@
+% Stone on the unit sphere.
+include ../../../stage/light.sc
+include ../../../stage/camera.sc
+shader { name m type stone }
+object { shader m type sphere }

@@ -1,0 +1,5 @@
+% Water on a turned box.
+include ../../../stage/light.sc
+include ../../../stage/camera.sc
+shader { name m type water }
+object { shader m transform { scaleu 1.5 rotatey 25 } type box }

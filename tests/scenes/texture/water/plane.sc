@@ -1,0 +1,5 @@
+% Water on a plane that reaches the horizon.
+include ../../../stage/light.sc
+include ../../../stage/camera.sc
+shader { name m type water }
+object { shader m type plane p 0 -1 0 n 0 1 0 }

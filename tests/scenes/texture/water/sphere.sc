@@ -1,0 +1,5 @@
+% Water on the unit sphere.
+include ../../../stage/light.sc
+include ../../../stage/camera.sc
+shader { name m type water }
+object { shader m type sphere }

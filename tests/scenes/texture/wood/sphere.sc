@@ -1,0 +1,5 @@
+% Wood on the unit sphere.
+include ../../../stage/light.sc
+include ../../../stage/camera.sc
+shader { name m type wood }
+object { shader m type sphere }
