@@ -24,10 +24,15 @@
 //! |---|---|---|---|---|
 //! | `Improved` | gradient noise of \[Perlin 2002\], exactly his listing | within [-1.04, 1.04] | 0 | 0.220 |
 //! | `Classic` | gradient noise of \[Perlin 1985\]: unit gradients, cubic curve | within [-0.87, 0.87] | 0 | 0.148 |
-//! | `Lattice` | random values at the lattice points, interpolated by the cubic curve | [-1, 1] | 0 | 0.303 |
+//! | `Lattice` | random values of a table at the lattice points, cubic curve | [-1, 1] | 0 | 0.303 |
+//! | `Value` | random values of a hash at the lattice points, curve of degree five | [-1, 1] | 0 | 0.327 |
+//! | `Simplex` | gradient noise on tetrahedra | [-1, 1] | 0 | 0.315 |
+//! | `Cellular` | distances to feature points, \[Worley 1996\]: see [`Cellular`] | [0, 1.74] for F1 | 0.52 | 0.52 |
+//! | `White` | a random value per cell | [-1, 1] | 0 | 0.5 |
 //!
-//! All have two and three dimensions (two are the slice z = 0 of three), a seed (0 is the published table), and the
-//! period 256 on each axis, or any smaller or larger integer period: [`Noise::with_period`].
+//! All have two and three dimensions (two are the slice z = 0 of three; cellular noise has its feature points in the plane
+//! then), a seed (0 is the published table), and, but for simplex noise, any integer period along each axis:
+//! [`Noise::with_period`]. The first three and simplex noise repeat after 256 cells in any case.
 //!
 //! # Promises
 //!
@@ -42,6 +47,9 @@
 //! # Sources
 //!
 //! * \[Perlin 1985\]: K. Perlin, "An Image Synthesizer", SIGGRAPH 1985.
+//! * \[Worley 1996\]: S. Worley, "A Cellular Texture Basis Function", SIGGRAPH 1996.
+//! * \[Perlin 2001\]: K. Perlin, "Noise Hardware", SIGGRAPH 2001 course notes; \[Gustavson 2005\]: S. Gustavson, "Simplex
+//!   Noise Demystified".
 //! * \[Perlin 2002\]: K. Perlin, "Improving Noise", SIGGRAPH 2002, and the listing that he published with it.
 
 #![deny(unsafe_code)]
@@ -57,6 +65,7 @@ mod sum;
 mod table;
 
 pub use basis::Basis;
+pub use basis::cellular::{Cellular, Feature, Metric};
 pub use noise::{Noise, PeriodError};
 pub use number::{Dual, Integer, Mask, Real};
 pub use sum::{Combine, Sum};

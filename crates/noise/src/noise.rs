@@ -3,7 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::basis::{Basis, Period, Tables, classic, improved, lattice};
+use crate::basis::cellular::{Cellular, Feature, Metric};
+use crate::basis::{Basis, Period, Tables, cellular, classic, improved, lattice, simplex, value, white};
 use crate::number::{Dual, Real};
 use crate::simd::{self, Kernel, Level, Terms};
 
@@ -13,6 +14,7 @@ pub struct Noise {
     basis: Basis,
     seed: u64,
     period: Period,
+    cellular: Cellular,
     tables: Arc<Tables>,
 }
 
@@ -23,12 +25,17 @@ pub struct PeriodError {
     pub axis: usize,
     /// The period that was asked for.
     pub period: u32,
+    /// The longest one that the noise can have; 0 if it can have none.
+    pub longest: u32,
 }
 
 impl fmt::Display for PeriodError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let axis = ["x", "y", "z"][self.axis.min(2)];
-        write!(formatter, "expected a period up to {} along {axis}, found {}", Noise::LONGEST_PERIOD, self.period)
+        match self.longest {
+            0 => write!(formatter, "this noise repeats along no axis, found a period of {} along {axis}", self.period),
+            longest => write!(formatter, "expected a period up to {longest} along {axis}, found {}", self.period),
+        }
     }
 }
 
@@ -40,20 +47,50 @@ impl Noise {
 
     /// The noise of this basis and seed. Seed 0 has the published permutation, other seeds a shuffle of it.
     pub fn new(basis: Basis, seed: u64) -> Self {
-        Noise { basis, seed, period: [0.0; 3], tables: Arc::new(Tables::new(seed)) }
+        Noise { basis, seed, period: [0.0; 3], cellular: Cellular::default(), tables: Arc::new(Tables::new(seed)) }
     }
 
     /// The same noise, repeating after so many cells along x, y and z: the value at p and at p + period are the same
-    /// bits wherever single precision represents both points exactly. 0 leaves an axis at the table's 256.
+    /// bits wherever single precision represents both points exactly. 0 leaves an axis at the 256 of the noises with a
+    /// table, and without a period otherwise.
     ///
     /// # Errors
-    /// When a period is longer than [`Noise::LONGEST_PERIOD`].
+    /// When a period is longer than [`Noise::LONGEST_PERIOD`], and for simplex noise, whose lattice is skewed.
     pub fn with_period(mut self, period: [u32; 3]) -> Result<Self, PeriodError> {
-        if let Some(axis) = period.iter().position(|&cells| cells > Self::LONGEST_PERIOD) {
-            return Err(PeriodError { axis, period: period[axis] });
+        let longest = if self.basis == Basis::Simplex { 0 } else { Self::LONGEST_PERIOD };
+        if let Some(axis) = period.iter().position(|&cells| cells > longest) {
+            return Err(PeriodError { axis, period: period[axis], longest });
         }
         self.period = period.map(f64::from);
         Ok(self)
+    }
+
+    /// The same noise with these parameters of [`Basis::Cellular`]; the other bases have no use for them. The jitter is
+    /// clamped to 0…1.
+    pub fn with_cellular(mut self, cellular: Cellular) -> Self {
+        let jitter = if cellular.jitter > 0.0 { cellular.jitter.min(1.0) } else { 0.0 };
+        self.cellular = Cellular { jitter, ..cellular };
+        self
+    }
+
+    /// The least and the largest value.
+    pub fn range(&self) -> [f64; 2] {
+        let largest = match (self.basis, self.cellular.feature) {
+            (Basis::Improved, _) => 1.04,
+            (Basis::Classic, _) => 0.87,
+            (Basis::Lattice | Basis::Value | Basis::Simplex | Basis::White, _) => 1.0,
+            (Basis::Cellular, Feature::Cell) => 1.0,
+            // The own cell's point is within the cell, and that of the nearest neighbour at most half a cell further.
+            (Basis::Cellular, feature) => {
+                let step = if feature == Feature::First { 1.0 } else { 1.5f64 };
+                return match self.cellular.metric {
+                    Metric::Euclidean => [0.0, (step * step + 2.0).sqrt()],
+                    Metric::Manhattan => [0.0, step + 2.0],
+                    Metric::Chebyshev => [0.0, step],
+                };
+            }
+        };
+        [-largest, largest]
     }
 
     /// The basis.
@@ -183,6 +220,10 @@ impl Noise {
             Basis::Improved => improved::value(&self.tables, point, &period),
             Basis::Classic => classic::value(&self.tables, point, &period),
             Basis::Lattice => lattice::value(&self.tables, point, &period),
+            Basis::Value => value::value(&self.tables, point, &period),
+            Basis::Simplex => simplex::value(&self.tables, point),
+            Basis::Cellular => cellular::value(&self.tables, &self.cellular, point, &period),
+            Basis::White => white::value(&self.tables, point, &period),
         }
     }
 }
@@ -190,7 +231,7 @@ impl Noise {
 impl PartialEq for Noise {
     /// The tables follow from the seed.
     fn eq(&self, other: &Self) -> bool {
-        (self.basis, self.seed, self.period) == (other.basis, other.seed, other.period)
+        (self.basis, self.seed, self.period, self.cellular) == (other.basis, other.seed, other.period, other.cellular)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Every instruction set, every basis and sum, every length of a batch: the same bits.
 
 use jaspe_noise::simd::{Kernel, Level, map_at};
-use jaspe_noise::{Basis, Combine, Integer, Noise, Real, Sum, math};
+use jaspe_noise::{Basis, Cellular, Combine, Feature, Integer, Metric, Noise, Real, Sum, math};
 
 /// Points near and far, on lattice points and beside them, and no numbers at all.
 fn coordinates(count: usize, salt: u64) -> Vec<f32> {
@@ -49,7 +49,7 @@ fn every_basis_and_sum_has_the_same_bits_at_every_level() {
     let [x, y, z] = [1, 2, 3].map(|salt| coordinates(4000, salt));
     for &basis in Basis::ALL {
         for (seed, period) in [(0, [0; 3]), (9, [3, 0, 300])] {
-            let noise = Noise::new(basis, seed).with_period(period).unwrap();
+            let Ok(noise) = Noise::new(basis, seed).with_period(period) else { continue };
             let name = format!("{basis:?} {period:?}");
             let expected: Vec<f32> = (0..4000).map(|i| noise.value([x[i], y[i], z[i]])).collect();
             check(&name, &expected, |level, at, values| {
@@ -111,11 +111,28 @@ fn numbers_and_elementary_functions_have_the_same_bits_at_every_level() {
 }
 
 #[test]
+fn every_cellular_noise_has_the_same_bits_at_every_level() {
+    let [x, y, z] = [9, 10, 11].map(|salt| coordinates(1000, salt));
+    for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
+        for feature in [Feature::First, Feature::Second, Feature::Difference, Feature::Cell] {
+            let cellular = Cellular { metric, feature, jitter: 0.7 };
+            let noise = Noise::new(Basis::Cellular, 1).with_cellular(cellular);
+            let expected: Vec<f32> = (0..1000).map(|i| noise.value([x[i], y[i], z[i]])).collect();
+            for level in Level::ALL {
+                let mut values = vec![0.0; 1000];
+                noise.fill_at(level, [&x, &y, &z], &mut values);
+                assert!((0..1000).all(|i| same(values[i], expected[i])), "{cellular:?} at {level:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn single_points_have_the_bits_of_batches() {
     let [x, y, z] = [6, 7, 8].map(|salt| coordinates(2000, salt));
     for &basis in Basis::ALL {
         for period in [[0; 3], [5, 0, 9]] {
-            let noise = Noise::new(basis, 2).with_period(period).unwrap();
+            let Ok(noise) = Noise::new(basis, 2).with_period(period) else { continue };
             let sum = Sum::new(noise.clone(), Combine::Absolute, 20);
             for i in 0..2000 {
                 let point = [x[i], y[i], z[i]];

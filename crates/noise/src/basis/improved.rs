@@ -9,7 +9,7 @@ pub(crate) const EDGE_CODES: [u8; 16] = [0, 9, 1, 8, 2, 11, 3, 10, 4, 13, 5, 12,
 
 /// The curve 6t⁵ − 15t⁴ + 10t³, whose slope and curvature vanish at both ends.
 #[inline(always)]
-fn fade<R: Real>(t: R) -> R {
+pub(super) fn fade<R: Real>(t: R) -> R {
     t * t * t * (t * (t * R::constant(6.0) - R::constant(15.0)) + R::constant(10.0))
 }
 

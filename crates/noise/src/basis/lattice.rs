@@ -5,7 +5,7 @@
 //! sum then has the same mean for any number of octaves, an absolute sum folds at zero, and a material may exchange one
 //! noise for another without a shift of its colours.
 
-use super::{Period, Tables, bilinear, columns, cubic, ends, hash, lerp, plus_zero, split};
+use super::{Period, Tables, bilinear, columns, cubic, ends, hash_byte, lerp, plus_zero, split};
 use crate::number::{Integer, Real};
 
 /// The noise at a point of two or three dimensions; the other coordinate is 0.
@@ -17,7 +17,7 @@ pub(crate) fn value<R: Real, const D: usize>(tables: &Tables, point: [R; D], per
     let (mut low, mut high) = ([u; 4], [u; 4]);
     for i in 0..4 {
         if D == 2 {
-            low[i] = number(hash::<R>(&tables.permutation, columns[i]));
+            low[i] = number(hash_byte::<R>(&tables.permutation, columns[i]));
         } else {
             let (below, above) = ends::<R>(tables, columns[i], cell[2], period[2]);
             (low[i], high[i]) = (number(below), number(above));
@@ -30,7 +30,7 @@ pub(crate) fn value<R: Real, const D: usize>(tables: &Tables, point: [R; D], per
     plus_zero(value * R::constant(2.0 / 255.0) - R::constant(1.0))
 }
 
-/// The value of a hash, from 0 to 255.
+/// The value of a hash_byte, from 0 to 255.
 #[inline(always)]
 fn number<R: Real>(hash: R::Int) -> R {
     R::from_int(hash & R::Int::constant(255))

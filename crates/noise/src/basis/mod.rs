@@ -1,8 +1,13 @@
 //! The lattice noises, one per file, and what they share: corners, periods and blends.
 
+pub(crate) mod cellular;
 pub(crate) mod classic;
+mod hash;
 pub(crate) mod improved;
 pub(crate) mod lattice;
+pub(crate) mod simplex;
+pub(crate) mod value;
+pub(crate) mod white;
 
 use crate::number::Real;
 use crate::seed;
@@ -17,11 +22,20 @@ pub enum Basis {
     Classic,
     /// Random values at the lattice points, interpolated by the curve 3t² − 2t³.
     Lattice,
+    /// Random values at the lattice points, from a hash, interpolated by the curve 6t⁵ − 15t⁴ + 10t³.
+    Value,
+    /// Gradient noise on tetrahedra instead of cubes. [Perlin 2001], [Gustavson 2005]
+    Simplex,
+    /// Distances to random feature points: see [`Cellular`](crate::Cellular). [Worley 1996]
+    Cellular,
+    /// A random value per cell, the same all over it.
+    White,
 }
 
 impl Basis {
     /// Every basis.
-    pub const ALL: &[Basis] = &[Basis::Improved, Basis::Classic, Basis::Lattice];
+    pub const ALL: &[Basis] =
+        &[Basis::Improved, Basis::Classic, Basis::Lattice, Basis::Value, Basis::Simplex, Basis::Cellular, Basis::White];
 
     /// The word for it in scenes and on the command line.
     pub fn name(self) -> &'static str {
@@ -29,6 +43,10 @@ impl Basis {
             Basis::Improved => "improved",
             Basis::Classic => "classic",
             Basis::Lattice => "lattice",
+            Basis::Value => "value",
+            Basis::Simplex => "simplex",
+            Basis::Cellular => "cellular",
+            Basis::White => "white",
         }
     }
 
@@ -49,6 +67,8 @@ pub(crate) struct Tables {
     pub(crate) corners: CornerTables,
     /// The components of the unit gradients.
     gradients: [FloatTable; 3],
+    /// What the hash of cells starts from.
+    hash_seed: i32,
 }
 
 impl Tables {
@@ -62,6 +82,7 @@ impl Tables {
             permutation,
             edges,
             gradients: seed::unit_vectors(seed).map(FloatTable::new),
+            hash_seed: seed::Random::new(seed).bits() as i32,
         }
     }
 }
@@ -69,25 +90,28 @@ impl Tables {
 /// The number of cells after which each axis repeats; 0 for the 256 of the table.
 pub(crate) type Period = [f64; 3];
 
-/// The lattice coordinates below and above along one axis.
+/// A cell's coordinate within the period of its axis, if it has one.
 #[inline(always)]
-fn corners<R: Real>(cell: R, period: f64) -> (R::Int, R::Int) {
-    let one = R::constant(1.0);
+fn wrap<R: Real>(cell: R, period: f64) -> R {
     if period == 0.0 {
-        return (cell.to_int(), (cell + one).to_int());
+        return cell;
     }
     // The quotient's rounding may put the remainder one period off; then it is outside [0, period).
     let period = R::constant(period);
-    let low = cell - (cell / period).floor() * period;
-    let low = R::select(low.less(R::constant(0.0)), low + period, low);
-    let low = R::select(low.less(period), low, low - period);
-    let high = low + one;
-    (low.to_int(), R::select(high.less(period), high, R::constant(0.0)).to_int())
+    let rest = cell - (cell / period).floor() * period;
+    let rest = R::select(rest.less(R::constant(0.0)), rest + period, rest);
+    R::select(rest.less(period), rest, rest - period)
+}
+
+/// The lattice coordinates below and above along one axis.
+#[inline(always)]
+fn corners<R: Real>(cell: R, period: f64) -> (R::Int, R::Int) {
+    (wrap(cell, period).to_int(), wrap(cell + R::constant(1.0), period).to_int())
 }
 
 /// The table's entry alone.
 #[inline(always)]
-fn hash<R: Real>(table: &PairTable, index: R::Int) -> R::Int {
+fn hash_byte<R: Real>(table: &PairTable, index: R::Int) -> R::Int {
     R::lookup_pair(table, index).0
 }
 
@@ -104,9 +128,9 @@ fn columns<R: Real>(tables: &Tables, x: R, y: R, period: &Period) -> [R::Int; 4]
     }
     let (x0, x1) = corners(x, period[0]);
     let (y0, y1) = corners(y, period[1]);
-    let (left, right) = (hash::<R>(table, x0), hash::<R>(table, x1));
-    let low = [hash::<R>(table, left + y0), hash::<R>(table, right + y0)];
-    [low[0], low[1], hash::<R>(table, left + y1), hash::<R>(table, right + y1)]
+    let (left, right) = (hash_byte::<R>(table, x0), hash_byte::<R>(table, x1));
+    let low = [hash_byte::<R>(table, left + y0), hash_byte::<R>(table, right + y0)];
+    [low[0], low[1], hash_byte::<R>(table, left + y1), hash_byte::<R>(table, right + y1)]
 }
 
 /// The hashes at the lower and upper end of a column.
@@ -116,7 +140,7 @@ fn ends<R: Real>(tables: &Tables, column: R::Int, z: R, period: f64) -> (R::Int,
         return R::lookup_pair(&tables.permutation, column + z.to_int());
     }
     let (low, high) = corners(z, period);
-    (hash::<R>(&tables.permutation, column + low), hash::<R>(&tables.permutation, column + high))
+    (hash_byte::<R>(&tables.permutation, column + low), hash_byte::<R>(&tables.permutation, column + high))
 }
 
 /// Each coordinate's cell, and the offset in it. (Closures and the methods of arrays are not sure to be inlined, and code

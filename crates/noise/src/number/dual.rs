@@ -108,8 +108,10 @@ impl<R: Real, const N: usize> Real for Dual<R, N> {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
+        // At zero, where the root has no slope, the derivative is given as 0.
         let root = self.value.sqrt();
-        self.with(root, |a| a / (root + root))
+        let positive = R::constant(0.0).less(root);
+        self.with(root, |a| R::select(positive, a / (root + root), R::constant(0.0)))
     }
     #[inline(always)]
     fn less(self, other: Self) -> R::Mask {

@@ -62,8 +62,8 @@ pub trait Real:
     fn less(self, other: Self) -> Self::Mask;
     /// `yes` where the mask is set, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
-    /// A whole number as an integer. For a number outside the integer's range or NaN the low eight bits are right (a
-    /// single-precision number past 2³¹ is a multiple of 256) or zero, the others unspecified.
+    /// A whole number as an integer. NaN and single-precision numbers outside the integer's range become the least
+    /// integer, whose low eight bits are right (such numbers are multiples of 256). Double-precision numbers wrap.
     fn to_int(self) -> Self::Int;
     /// An integer as a number.
     fn from_int(value: Self::Int) -> Self;

@@ -70,7 +70,7 @@ const EDGES: [[f32; 3]; 16] = [
 ];
 
 macro_rules! scalar {
-    ($float:ident, $bits:ident, $signed:ident, $double:literal, $mantissa_bits:literal, $bias:literal, $entries:ident) => {
+    ($float:ident, $bits:ident, $signed:ident, $double:literal, $mantissa_bits:literal, $bias:literal, $entries:ident, $to_int:expr) => {
         impl Real for $float {
             type Int = Wrapping;
             type Mask = bool;
@@ -102,8 +102,7 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn to_int(self) -> Wrapping {
-                // Past 2⁶³ both precisions have only multiples of 256.
-                Wrapping(if $float::abs(self) < 9.0e18 { self as i64 as i32 } else { 0 })
+                Wrapping($to_int(self))
             }
             #[inline(always)]
             fn from_int(value: Wrapping) -> Self {
@@ -143,5 +142,10 @@ macro_rules! scalar {
         }
     };
 }
-scalar!(f32, u32, i32, false, 23, 127, singles);
-scalar!(f64, u64, i64, true, 52, 1023, doubles);
+// (A single-precision number past 2³¹ is a multiple of 256, a double-precision number past 2⁶³ of 2048.)
+scalar!(f32, u32, i32, false, 23, 127, singles, |number: f32| {
+    if number.abs() < 2_147_483_648.0 { number as i32 } else { i32::MIN }
+});
+scalar!(f64, u64, i64, true, 52, 1023, doubles, |number: f64| {
+    if number.abs() < 9.0e18 { number as i64 as i32 } else { i32::MIN }
+});

@@ -8,7 +8,7 @@ mod water;
 mod wood;
 
 use jaspe_noise::simd::{self, Level};
-use jaspe_noise::{Basis, Combine, Real, Sum};
+use jaspe_noise::{Combine, Real, Sum};
 
 use crate::args::Args;
 use crate::declare::{self, Declaration, Parameter, Value};
@@ -110,11 +110,8 @@ materials! {
 
 /// The bounds of a sum: those of its noise, times the amplitudes of all octaves.
 fn sum_bounds(sum: &Sum) -> [f32; 2] {
-    let noise = match sum.noise().basis() {
-        Basis::Improved => 1.04,
-        Basis::Classic => 0.87,
-        Basis::Lattice => 1.0,
-    };
+    let [low, high] = sum.noise().range().map(|end| end as f32);
+    let noise = high.max(-low);
     let bound = noise * 2.0 * (1.0 - 0.5f32.powi(sum.octaves() as i32));
     match sum.combine() {
         Combine::Plain => [-bound, bound],

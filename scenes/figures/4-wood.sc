@@ -1,0 +1,19 @@
+% Figure 4 of the 2010 report. Wood: rings with a sharp edge on one side.
+% In its own dialect: `power` is the distance at which a light ends, and colours are display values.
+
+dialect report
+
+image { resolution 640 480 aa 0 1 samples 1 }
+camera { type pinhole eye 0 0 20 target 0 0 0 up 0 1 0 fov 60 aspect 1.333 }
+
+light { type point color 1 1 1 power 30 p 0 0 15 }
+light { type point color 1 1 1 power 30 p -14 0 12.5 }
+light { type point color 1 1 1 power 30 p 14 0 12.5 }
+
+shader {
+   name wood
+   type wood
+   depth 8
+}
+
+object { shader wood type sphere c 0 0 0 r 5 }

@@ -1,0 +1,4 @@
+% Stone on a sphere, a knot and a cube.
+
+shader { name shown type stone }
+include "include/studio.sc"
