@@ -77,7 +77,8 @@ impl Rules for Sunflow {
     }
 
     fn finish(&self, node: &Node) -> Vec3 {
-        node.direct
+        // Scenes with absurd numbers overflow; one sample must not spoil its pixel, nor a sum of them overflow.
+        if node.direct.is_finite() { node.direct.min(Vec3::splat(1e30)) } else { Vec3::ZERO }
     }
 
     fn t_min(&self) -> f32 {
