@@ -139,36 +139,32 @@ impl Noise {
     /// # Panics
     /// When the slices differ in length.
     pub fn fill_at<const D: usize>(&self, level: Level, points: [&[f32]; D], values: &mut [f32]) {
-        let once = Terms { octaves: 1, absolute: false, lacunarity: 1.0, gain: 1.0 };
-        self.sum_with(self, level, &once, points, values);
+        self.sum_with(level, &Terms::ONE, points, values, |level, points, values| map(self, level, points, values));
     }
 
     /// Fills `values` with a sum of this noise, as far as there is a kernel made by hand for it, the rest by the generic
-    /// evaluation `kernel` of the same sum.
+    /// evaluation `rest` of the same sum.
     pub(crate) fn sum_with<const D: usize>(
         &self,
-        kernel: &impl Kernel<D>,
         level: Level,
         terms: &Terms,
         points: [&[f32]; D],
         values: &mut [f32],
+        rest: impl Fn(Level, [&[f32]; D], &mut [f32]),
     ) {
         let mut done = 0;
         if self.has_kernel() {
             done = simd::sum_improved(level, &self.tables, terms, points, values);
         }
-        if done == values.len() {
-            return;
-        }
-        let points = points.map(|coordinates| &coordinates[done..]);
-        let values = &mut values[done..];
-        if values.len() <= simd::FEW {
-            for (i, value) in values.iter_mut().enumerate() {
-                let sum = self.sum_at(level, terms, points.map(|coordinates| coordinates[i]));
-                *value = sum.unwrap_or_else(|| kernel.run(points.map(|coordinates| coordinates[i])));
+        if values.len() - done <= simd::FEW {
+            while done < values.len() {
+                let Some(sum) = self.sum_at(level, terms, points.map(|coordinates| coordinates[done])) else { break };
+                values[done] = sum;
+                done += 1;
             }
-        } else {
-            simd::map_at(level, kernel, points, values);
+        }
+        if done < values.len() {
+            rest(level, points.map(|coordinates| &coordinates[done..]), &mut values[done..]);
         }
     }
 
@@ -188,23 +184,22 @@ impl Noise {
             return None;
         }
         const LANES: usize = 16;
-        let (mut frequency, mut amplitude, mut sum) = (1.0, 1.0, 0.0);
+        let (mut frequency, mut sum) = (1.0, 0.0);
         for start in (0..terms.octaves).step_by(LANES) {
             let count = LANES.min((terms.octaves - start) as usize);
             let mut scaled = [[0.0; LANES]; D];
             for lane in 0..count {
                 for (scaled, coordinate) in scaled.iter_mut().zip(point) {
-                    scaled[lane] = coordinate * frequency;
+                    scaled[lane] = coordinate * frequency as f32;
                 }
                 frequency *= terms.lacunarity;
             }
             let mut noises = [0.0; LANES];
             // (Whole vectors: what fills them up costs nothing.)
             let padded = if level == Level::Avx512 { LANES } else { count.next_multiple_of(8) };
-            simd::map_at(level, self, scaled.each_ref().map(|axis| &axis[..padded]), &mut noises[..padded]);
-            for noise in &noises[..count] {
-                sum += amplitude * if terms.absolute { noise.abs() } else { *noise };
-                amplitude *= terms.gain;
+            map(self, level, scaled.each_ref().map(|axis| &axis[..padded]), &mut noises[..padded]);
+            for (octave, noise) in (start..).zip(&noises[..count]) {
+                sum += terms.amplitude(octave) as f32 * if terms.absolute { noise.abs() } else { *noise };
             }
         }
         Some(sum)
@@ -239,5 +234,33 @@ impl<const D: usize> Kernel<D> for Noise {
     #[inline(always)]
     fn run<R: Real>(&self, point: [R; D]) -> R {
         self.value(point)
+    }
+}
+
+/// An evaluation of two and of three dimensions over slices. The two are compiled here, once, and not again in each crate
+/// that evaluates noise.
+pub(crate) trait Map {
+    fn map_plane(&self, level: Level, points: [&[f32]; 2], values: &mut [f32]);
+    fn map_space(&self, level: Level, points: [&[f32]; 3], values: &mut [f32]);
+}
+
+/// The one for this number of dimensions.
+pub(crate) fn map<const D: usize>(map: &impl Map, level: Level, points: [&[f32]; D], values: &mut [f32]) {
+    const { assert!(D == 2 || D == 3, "a noise has two or three dimensions") };
+    match D {
+        2 => map.map_plane(level, [points[0], points[1]], values),
+        _ => map.map_space(level, [points[0], points[1], points[D - 1]], values),
+    }
+}
+
+impl Map for Noise {
+    #[inline(never)]
+    fn map_plane(&self, level: Level, points: [&[f32]; 2], values: &mut [f32]) {
+        simd::map_at(level, self, points, values);
+    }
+
+    #[inline(never)]
+    fn map_space(&self, level: Level, points: [&[f32]; 3], values: &mut [f32]) {
+        simd::map_at(level, self, points, values);
     }
 }

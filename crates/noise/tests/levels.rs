@@ -111,6 +111,24 @@ fn numbers_and_elementary_functions_have_the_same_bits_at_every_level() {
 }
 
 #[test]
+fn any_lacunarity_gain_and_fraction_has_the_same_bits_at_every_level() {
+    let [x, y, z] = [12, 13, 14].map(|salt| coordinates(4000, salt));
+    for basis in [Basis::Improved, Basis::Value] {
+        for combine in Combine::ALL {
+            for octaves in [0.0, 0.3, 1.0, 1.7, 4.6] {
+                let sum = Sum::new(Noise::new(basis, 3), *combine, 0);
+                let sum = sum.with_octaves(octaves).with_lacunarity(2.17).with_gain(0.61);
+                let expected: Vec<f32> = (0..4000).map(|i| sum.value([x[i], y[i], z[i]])).collect();
+                check(&format!("{sum:?}"), &expected, |level, at, values| {
+                    sum.fill_at(level, [&x[at.clone()], &y[at.clone()], &z[at]], values);
+                });
+                assert!((0..300).all(|i| same(sum.at([x[i], y[i], z[i]]), expected[i])));
+            }
+        }
+    }
+}
+
+#[test]
 fn every_cellular_noise_has_the_same_bits_at_every_level() {
     let [x, y, z] = [9, 10, 11].map(|salt| coordinates(1000, salt));
     for metric in [Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev] {

@@ -239,19 +239,6 @@ fn any_input_has_a_value() {
     }
 }
 
-#[test]
-fn turbulence_is_the_printed_sum() {
-    let noise = Noise::new(Basis::Improved, 0);
-    let turbulence = Sum::new(noise.clone(), Combine::Absolute, 4);
-    let mut random = random_numbers();
-    for _ in 0..1000 {
-        let point: [f32; 3] = std::array::from_fn(|_| random() as f32 * 10.0);
-        let octave = |factor: f32| noise.value(point.map(|coordinate| coordinate * factor)).abs();
-        let expected = octave(1.0) + 0.5 * octave(2.0) + 0.25 * octave(4.0) + 0.125 * octave(8.0);
-        assert_eq!(turbulence.value(point), expected);
-    }
-}
-
 /// Means of the absolute value in space and in the plane, and of the value: basis by basis.
 const MEANS: [(Basis, f64, f64, f64); 7] = [
     (Basis::Improved, 0.220, 0.204, 0.0),

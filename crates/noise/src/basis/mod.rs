@@ -16,17 +16,17 @@ use crate::table::{ByteTable, CornerTables, FloatTable, PairTable};
 /// A lattice noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Basis {
-    /// Gradient noise of [Perlin 2002], exactly his listing: twelve edge directions, the curve 6t⁵ − 15t⁴ + 10t³.
+    /// Gradient noise of \[Perlin 2002\], exactly his listing: twelve edge directions, the curve 6t⁵ − 15t⁴ + 10t³.
     Improved,
-    /// Gradient noise of [Perlin 1985]: random unit gradients, the curve 3t² − 2t³.
+    /// Gradient noise of \[Perlin 1985\]: random unit gradients, the curve 3t² − 2t³.
     Classic,
     /// Random values at the lattice points, interpolated by the curve 3t² − 2t³.
     Lattice,
     /// Random values at the lattice points, from a hash, interpolated by the curve 6t⁵ − 15t⁴ + 10t³.
     Value,
-    /// Gradient noise on tetrahedra instead of cubes. [Perlin 2001], [Gustavson 2005]
+    /// Gradient noise on tetrahedra instead of cubes. \[Perlin 2001\], \[Gustavson 2005\]
     Simplex,
-    /// Distances to random feature points: see [`Cellular`](crate::Cellular). [Worley 1996]
+    /// Distances to random feature points: see [`Cellular`](crate::Cellular). \[Worley 1996\]
     Cellular,
     /// A random value per cell, the same all over it.
     White,
@@ -167,7 +167,7 @@ fn bilinear<R: Real>(u: R, v: R, corners: [R; 4]) -> R {
     lerp(v, lerp(u, corners[0], corners[1]), lerp(u, corners[2], corners[3]))
 }
 
-/// The curve 3t² − 2t³, whose slope vanishes at both ends. [Perlin 1985]
+/// The curve 3t² − 2t³, whose slope vanishes at both ends. \[Perlin 1985\]
 #[inline(always)]
 fn cubic<R: Real>(t: R) -> R {
     t * t * (R::constant(3.0) - R::constant(2.0) * t)

@@ -131,9 +131,26 @@ pub(crate) struct Terms {
     /// Whether each adds its absolute value.
     pub absolute: bool,
     /// The ratio between the frequencies of neighbouring octaves.
-    pub lacunarity: f32,
+    pub lacunarity: f64,
     /// The ratio between the amplitudes of neighbouring octaves.
-    pub gain: f32,
+    pub gain: f64,
+    /// What the amplitude of the last octave is multiplied by.
+    pub last: f64,
+}
+
+impl Terms {
+    /// The noise alone.
+    pub const ONE: Terms = Terms { octaves: 1, absolute: false, lacunarity: 1.0, gain: 1.0, last: 1.0 };
+
+    /// The amplitude of an octave. (The powers of ½ are exact.)
+    #[inline(always)]
+    pub fn amplitude(&self, octave: u32) -> f64 {
+        let mut amplitude = 1.0;
+        for _ in 0..octave {
+            amplitude *= self.gain;
+        }
+        if octave + 1 == self.octaves { amplitude * self.last } else { amplitude }
+    }
 }
 
 /// The sum of improved noise without a period at the first points, by a kernel made by hand; returns how many points it

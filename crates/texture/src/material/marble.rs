@@ -32,7 +32,7 @@ impl Kind for Marble {
     fn shape<R: Real>(&self, along: R, sum: R) -> R {
         match self.combine {
             Combine::Plain => math::sin(along + sum),
-            Combine::Absolute => math::cos(along + sum),
+            _ => math::cos(along + sum),
         }
     }
 

@@ -8,7 +8,7 @@ mod water;
 mod wood;
 
 use jaspe_noise::simd::{self, Level};
-use jaspe_noise::{Combine, Real, Sum};
+use jaspe_noise::{Real, Sum};
 
 use crate::args::Args;
 use crate::declare::{self, Declaration, Parameter, Value};
@@ -83,7 +83,7 @@ macro_rules! materials {
             }
 
             pub(crate) fn coefficient_range(&self, sum: &Sum) -> [f32; 2] {
-                let bounds = sum_bounds(sum);
+                let bounds = sum.range().map(|end| end as f32);
                 match self { $(Material::$kind(kind) => kind.coefficient_range(bounds),)* }
             }
 
@@ -106,17 +106,6 @@ materials! {
     wood::Wood
     marble::Marble
     stone::Stone
-}
-
-/// The bounds of a sum: those of its noise, times the amplitudes of all octaves.
-fn sum_bounds(sum: &Sum) -> [f32; 2] {
-    let [low, high] = sum.noise().range().map(|end| end as f32);
-    let noise = high.max(-low);
-    let bound = noise * 2.0 * (1.0 - 0.5f32.powi(sum.octaves() as i32));
-    match sum.combine() {
-        Combine::Plain => [-bound, bound],
-        Combine::Absolute => [0.0, bound],
-    }
 }
 
 /// The parameters that all materials of the report have, with the defaults of one of them.

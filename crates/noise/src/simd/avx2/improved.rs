@@ -29,17 +29,19 @@ pub(in crate::simd) fn sum(tables: &Tables, terms: &Terms, points: [&[f32]; 3], 
             points[2][at.clone()].as_chunks().0,
         ];
         let values = values[at].as_chunks_mut().0;
-        let mut octave = Octave { frequency: 1.0, amplitude: 1.0, absolute: terms.absolute };
+        // (An amplitude of 1 lets the first octave overwrite what is there.)
+        if terms.octaves == 0 || terms.amplitude(0) != 1.0 {
+            values.fill([0.0; LANES]);
+        }
+        let mut frequency = 1.0;
         for index in 0..terms.octaves {
+            let amplitude = terms.amplitude(index) as f32;
+            let octave = Octave { frequency: frequency as f32, amplitude, absolute: terms.absolute };
             match index {
-                0 => add::<true>(&tables.corners, &octave, points, values),
+                0 if amplitude == 1.0 => add::<true>(&tables.corners, &octave, points, values),
                 _ => add::<false>(&tables.corners, &octave, points, values),
             }
-            octave.frequency *= terms.lacunarity;
-            octave.amplitude *= terms.gain;
-        }
-        if terms.octaves == 0 {
-            values.fill([0.0; LANES]);
+            frequency *= terms.lacunarity;
         }
     }
     count

@@ -16,12 +16,12 @@ pub(in crate::simd) fn improved(tables: &Tables, x: f32, y: f32, z: f32) -> f32 
 /// The sum at a point.
 #[target_feature(enable = "avx2,fma")]
 pub(in crate::simd) fn sum(tables: &Tables, terms: &Terms, x: f32, y: f32, z: f32) -> f32 {
-    let (mut frequency, mut amplitude, mut sum) = (1.0, 1.0, 0.0);
-    for _ in 0..terms.octaves {
-        let noise = noise(tables, x * frequency, y * frequency, z * frequency);
-        sum += amplitude * if terms.absolute { noise.abs() } else { noise };
+    let (mut frequency, mut sum) = (1.0, 0.0);
+    for octave in 0..terms.octaves {
+        let scale = frequency as f32;
+        let noise = noise(tables, x * scale, y * scale, z * scale);
+        sum += terms.amplitude(octave) as f32 * if terms.absolute { noise.abs() } else { noise };
         frequency *= terms.lacunarity;
-        amplitude *= terms.gain;
     }
     sum
 }

@@ -37,17 +37,19 @@ pub(in crate::simd) fn sum(tables: &Tables, terms: &Terms, points: [&[f32]; 3], 
         let at = start..count.min(start + BLOCK);
         let points = [&points[0][at.clone()], &points[1][at.clone()], &points[2][at.clone()]];
         let values = &mut values[at];
-        let mut octave = Octave { frequency: 1.0, amplitude: 1.0, absolute: terms.absolute };
+        // (An amplitude of 1 lets the first octave overwrite what is there.)
+        if terms.octaves == 0 || terms.amplitude(0) != 1.0 {
+            values.fill(0.0);
+        }
+        let mut frequency = 1.0;
         for index in 0..terms.octaves {
+            let amplitude = terms.amplitude(index) as f32;
+            let octave = Octave { frequency: frequency as f32, amplitude, absolute: terms.absolute };
             match index {
-                0 => add::<true>(&registers, &octave, points, values),
+                0 if amplitude == 1.0 => add::<true>(&registers, &octave, points, values),
                 _ => add::<false>(&registers, &octave, points, values),
             }
-            octave.frequency *= terms.lacunarity;
-            octave.amplitude *= terms.gain;
-        }
-        if terms.octaves == 0 {
-            values.fill(0.0);
+            frequency *= terms.lacunarity;
         }
     }
     count
