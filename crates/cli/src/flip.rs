@@ -182,3 +182,34 @@ fn color_error(a: Color, b: Color, largest: f64) -> f64 {
         at_knee + (distance - knee) / (largest - knee) * (1.0 - at_knee)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pattern(shift: u32) -> Vec<[f32; 3]> {
+        let pixel = |x: u32, y: u32| {
+            let stripe = (x + shift) / 5 + y / 7;
+            let blue = if (x + shift) % 11 < 4 { 200 } else { 5 * y };
+            [stripe * 37 % 256, 4 * x, blue].map(|byte| byte as f32 / 255.0)
+        };
+        (0..48).flat_map(|y| (0..64).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect()
+    }
+
+    /// The expected values come from the authors' own code (LDR-FLIP, the same viewing conditions) in nv-flip 0.1.2.
+    #[test]
+    fn errors_agree_with_the_published_program() {
+        let errors = flip(&pattern(0), &pattern(2), 64);
+        let mean = errors.iter().sum::<f32>() / errors.len() as f32;
+        let largest = errors.iter().copied().fold(0.0, f32::max);
+        for (found, expected) in [
+            (mean, 0.285_116_4),
+            (largest, 0.818_078_94),
+            (errors[0], 0.169_796_26),
+            (errors[20 * 64 + 30], 0.306_445_93),
+            (errors[47 * 64 + 63], 0.293_659_93),
+        ] {
+            assert!((found - expected).abs() < 1e-4, "expected {expected}, found {found}");
+        }
+    }
+}

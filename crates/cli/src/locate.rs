@@ -21,6 +21,13 @@ pub struct Excerpt {
     pub is_cut_before: bool,
 }
 
+impl Excerpt {
+    /// Whether both show the same piece of the same line.
+    pub fn shows_the_same_as(&self, other: &Excerpt) -> bool {
+        (&self.path, self.position.line, &self.text) == (&other.path, other.position.line, &other.text)
+    }
+}
+
 /// Finds lines and columns; what it learns about a file is kept.
 #[derive(Debug)]
 pub struct Locator<'a> {

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use annotate_snippets::{AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
+use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
 use jaspe_scene::{Diagnostic, Diagnostics, Severity, Sources, Span};
 use serde_json::{Value, json};
 
@@ -51,10 +51,19 @@ fn level(severity: Severity) -> Level<'static> {
 }
 
 fn one(diagnostic: &Diagnostic, locator: &mut Locator<'_>) -> String {
-    let mut group = level(diagnostic.severity).primary_title(diagnostic.message.as_str()).elements(NOTHING);
+    let mut shown: Vec<(Excerpt, Vec<Annotation<'_>>)> = Vec::new();
     for place in places(diagnostic) {
         let Some(excerpt) = locator.excerpt(place.span) else { continue };
-        group = excerpt_elements(group, &excerpt, &place);
+        let annotation = place.kind.span(excerpt.span.clone()).label(place.label.map(Cow::Borrowed));
+        // Places on the same line share its excerpt.
+        match shown.iter_mut().find(|(other, _)| other.shows_the_same_as(&excerpt)) {
+            Some((_, annotations)) => annotations.push(annotation),
+            None => shown.push((excerpt, vec![annotation])),
+        }
+    }
+    let mut group = level(diagnostic.severity).primary_title(diagnostic.message.as_str()).elements(NOTHING);
+    for (excerpt, annotations) in shown {
+        group = excerpt_elements(group, excerpt, annotations);
     }
     let help = diagnostic.hints.iter().map(|hint| Level::HELP.message(hint.as_str()));
     Renderer::styled().render(&[group.elements(help)])
@@ -79,16 +88,15 @@ fn places(diagnostic: &Diagnostic) -> impl Iterator<Item = Place<'_>> {
     own.into_iter().chain(others)
 }
 
-fn excerpt_elements<'a>(group: Group<'a>, excerpt: &Excerpt, place: &Place<'a>) -> Group<'a> {
+fn excerpt_elements<'a>(group: Group<'a>, excerpt: Excerpt, annotations: Vec<Annotation<'a>>) -> Group<'a> {
     let position = excerpt.position;
-    let annotation = place.kind.span(excerpt.span.clone()).label(place.label.map(Cow::Borrowed));
-    let snippet = Snippet::source(excerpt.text.clone()).line_start(position.line).annotation(annotation);
+    let snippet = Snippet::source(excerpt.text).line_start(position.line).annotations(annotations);
     if excerpt.is_cut_before {
         // The column cannot be counted in what is shown: it is stated separately.
-        let origin = Origin::path(excerpt.path.clone()).line(position.line).char_column(position.column);
+        let origin = Origin::path(excerpt.path).line(position.line).char_column(position.column);
         group.element(origin).element(snippet)
     } else {
-        group.element(snippet.path(excerpt.path.clone()))
+        group.element(snippet.path(excerpt.path))
     }
 }
 
@@ -166,6 +174,14 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part} in\n{text}");
         }
+    }
+
+    #[test]
+    fn places_on_one_line_share_an_excerpt() {
+        let diagnostic = Diagnostic::error(span(9, 10), "`m` twice").label(span(2, 3), "first here");
+        let text = plain(diagnostic, b"a m    b m c\nd\n");
+        assert_eq!(text.matches("a m    b m c").count(), 1, "{text}");
+        assert!(text.contains("a.sc:1:10") && text.contains("first here"), "{text}");
     }
 
     #[test]
