@@ -18,7 +18,11 @@ impl Aabb {
     pub const EMPTY: Aabb = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     pub fn around(points: impl IntoIterator<Item = Vec3>) -> Self {
-        points.into_iter().fold(Aabb::EMPTY, |b, p| Aabb { min: b.min.min(p), max: b.max.max(p) })
+        points.into_iter().fold(Aabb::EMPTY, Aabb::extend)
+    }
+
+    pub fn extend(self, p: Vec3) -> Self {
+        Aabb { min: self.min.min(p), max: self.max.max(p) }
     }
 
     pub fn union(self, other: Aabb) -> Aabb {

@@ -4,6 +4,8 @@
 //! meets is named by an [`Id`]; where and how it lies there is worked out in [`surface`].
 
 mod bvh;
+mod kernel;
+mod packet;
 mod plan;
 mod simd;
 mod surface;
@@ -15,6 +17,7 @@ mod tests;
 use glam::{Vec2, Vec3};
 
 use crate::affine::Affine;
+use packet::Packet;
 pub(crate) use plan::{Placement, Plan};
 pub(crate) use surface::Surface;
 pub(crate) use traverse::Scratch;
@@ -29,6 +32,12 @@ pub(crate) struct Id {
 impl Id {
     /// No primitive.
     pub const NONE: Id = Id { object: u32::MAX, index: u32::MAX };
+
+    /// Whether this primitive is the one to see where `other` is just as far away.
+    #[inline(always)]
+    fn precedes(self, other: Id) -> bool {
+        other != Id::NONE && (self.object, self.index) < (other.object, other.index)
+    }
 }
 
 /// A ray: points `origin + t · direction` with `t_min < t < t_max`.
@@ -55,6 +64,14 @@ pub(crate) struct Hit {
 impl Hit {
     /// Nothing, infinitely far away.
     pub const NONE: Hit = Hit { t: f32::INFINITY, u: 0.0, v: 0.0, id: Id::NONE };
+
+    /// Takes the other hit if it is the one to see.
+    #[inline(always)]
+    fn improve(&mut self, other: Hit) {
+        if other.t < self.t || other.t == self.t && other.id.precedes(self.id) {
+            *self = other;
+        }
+    }
 }
 
 /// An infinite plane in the world.
@@ -156,64 +173,84 @@ impl Geometry {
     }
 
     /// The first hit of every ray.
-    pub fn closest(&self, rays: &[impl AsRef<Ray>], hits: &mut Vec<Hit>, scratch: &mut Scratch) {
+    pub fn closest<R: AsRef<Ray>>(&self, rays: &[R], hits: &mut Vec<Hit>, scratch: &mut Scratch) {
         hits.clear();
-        #[cfg(target_arch = "x86_64")]
-        if simd::has_avx2() {
-            #[allow(unsafe_code, reason = "the processor was asked for AVX2")]
-            unsafe {
-                return self.closest_avx2(rays, hits, scratch);
-            }
-        }
-        self.closest_with::<simd::Portable>(rays, hits, scratch);
+        simd::run(Closest { geometry: self, rays, hits, scratch });
     }
 
     /// For every shadow ray, whether something lies before its end.
-    pub fn occluded(&self, rays: &[impl AsRef<Ray>], blocked: &mut Vec<bool>, scratch: &mut Scratch) {
+    pub fn occluded<R: AsRef<Ray>>(&self, rays: &[R], blocked: &mut Vec<bool>, scratch: &mut Scratch) {
         blocked.clear();
-        #[cfg(target_arch = "x86_64")]
-        if simd::has_avx2() {
-            #[allow(unsafe_code, reason = "the processor was asked for AVX2")]
-            unsafe {
-                return self.occluded_avx2(rays, blocked, scratch);
-            }
+        simd::run(Occluded { geometry: self, rays, blocked, scratch });
+    }
+
+    /// Improves `hit` by all that one ray meets.
+    #[inline(always)]
+    fn trace<S: simd::Simd, const ANY: bool>(&self, ray: &Ray, hit: &mut Hit, scratch: &mut Scratch) {
+        for plane in &self.planes {
+            plane.intersect(ray, hit);
         }
-        self.occluded_with::<simd::Portable>(rays, blocked, scratch);
+        if !ANY || hit.id == Id::NONE {
+            let root = (0.0, self.tree.root);
+            self.tree.trace::<S, ANY>(root, ray, hit, &mut scratch.outer, &mut scratch.inner);
+        }
     }
+}
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-    fn closest_avx2(&self, rays: &[impl AsRef<Ray>], hits: &mut Vec<Hit>, scratch: &mut Scratch) {
-        self.closest_with::<simd::Avx2>(rays, hits, scratch);
-    }
+/// [`Geometry::closest`] as a kernel.
+struct Closest<'a, R> {
+    geometry: &'a Geometry,
+    rays: &'a [R],
+    hits: &'a mut Vec<Hit>,
+    scratch: &'a mut Scratch,
+}
 
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-    fn occluded_avx2(&self, rays: &[impl AsRef<Ray>], blocked: &mut Vec<bool>, scratch: &mut Scratch) {
-        self.occluded_with::<simd::Avx2>(rays, blocked, scratch);
-    }
+impl<R: AsRef<Ray>> simd::Kernel for Closest<'_, R> {
+    type Output = ();
 
     #[inline(always)]
-    fn closest_with<S: simd::Simd>(&self, rays: &[impl AsRef<Ray>], hits: &mut Vec<Hit>, scratch: &mut Scratch) {
-        for ray in rays {
-            let ray = ray.as_ref();
-            let mut hit = Hit { t: ray.t_max, ..Hit::NONE };
-            self.tree.closest::<S>(ray, &mut hit, scratch);
-            for plane in &self.planes {
-                if let Some(t) = plane.intersect(ray, hit.t) {
-                    hit = Hit { t, u: 0.0, v: 0.0, id: plane.id() };
-                }
-            }
+    fn run<S: simd::Simd>(self) {
+        let Closest { geometry, rays, hits, scratch } = self;
+        let (packets, rest) = rays.as_chunks();
+        for rays in packets {
+            let mut packet = Packet::<_, S, false>::new(rays);
+            packet.planes(&geometry.planes);
+            packet.trace(&geometry.tree, scratch);
+            hits.extend(packet.hits());
+        }
+        for ray in rest {
+            let mut hit = Hit { t: ray.as_ref().t_max, ..Hit::NONE };
+            geometry.trace::<S, false>(ray.as_ref(), &mut hit, scratch);
             hits.push(hit);
         }
     }
+}
+
+/// [`Geometry::occluded`] as a kernel.
+struct Occluded<'a, R> {
+    geometry: &'a Geometry,
+    rays: &'a [R],
+    blocked: &'a mut Vec<bool>,
+    scratch: &'a mut Scratch,
+}
+
+impl<R: AsRef<Ray>> simd::Kernel for Occluded<'_, R> {
+    type Output = ();
 
     #[inline(always)]
-    fn occluded_with<S: simd::Simd>(&self, rays: &[impl AsRef<Ray>], blocked: &mut Vec<bool>, scratch: &mut Scratch) {
-        for ray in rays {
-            let ray = ray.as_ref();
-            let by_plane = self.planes.iter().any(|plane| plane.intersect(ray, ray.t_max).is_some());
-            blocked.push(by_plane || self.tree.occluded::<S>(ray, scratch));
+    fn run<S: simd::Simd>(self) {
+        let Occluded { geometry, rays, blocked, scratch } = self;
+        let (packets, rest) = rays.as_chunks();
+        for rays in packets {
+            let mut packet = Packet::<_, S, true>::new(rays);
+            packet.planes(&geometry.planes);
+            packet.trace(&geometry.tree, scratch);
+            blocked.extend(packet.blocked());
+        }
+        for ray in rest {
+            let mut hit = Hit { t: ray.as_ref().t_max, ..Hit::NONE };
+            geometry.trace::<S, true>(ray.as_ref(), &mut hit, scratch);
+            blocked.push(hit.id != Id::NONE);
         }
     }
 }
@@ -223,10 +260,12 @@ impl PlaneShape {
         Id { object: self.object, index: 0 }
     }
 
-    /// The distance at which `ray` crosses the plane, if that is before `t_max`.
+    /// Improves `hit` by where `ray` crosses the plane.
     #[inline(always)]
-    fn intersect(&self, ray: &Ray, t_max: f32) -> Option<f32> {
+    fn intersect(&self, ray: &Ray, hit: &mut Hit) {
         let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
-        (t > ray.t_min && t < t_max && ray.skip != self.id()).then_some(t)
+        if t > ray.t_min && ray.skip != self.id() {
+            hit.improve(Hit { t, u: 0.0, v: 0.0, id: self.id() });
+        }
     }
 }

@@ -111,8 +111,8 @@ impl Plan {
     }
 
     /// A tree for each shape that has instances, in the order of `instances`.
-    fn shared_trees(&self, builder: &mut Builder) -> Vec<(Option<u32>, Option<(Child, Aabb)>)> {
-        let mut trees: Vec<(Option<u32>, Option<(Child, Aabb)>)> = Vec::new();
+    fn shared_trees(&self, builder: &mut Builder) -> Vec<SharedTree> {
+        let mut trees: Vec<SharedTree> = Vec::new();
         for &(_, shape, _) in &self.instances {
             if trees.iter().any(|(known, _)| *known == shape) {
                 continue;
@@ -147,6 +147,9 @@ fn bake(mesh: &mut MeshShape, place: &Placement) {
         normals.iter_mut().for_each(|n| *n = back.transposed(*n));
     }
 }
+
+/// What instances show, a mesh or the unit sphere, and the tree over it unless it is empty.
+type SharedTree = (Option<u32>, Option<(Child, Aabb)>);
 
 /// Trees in the making.
 #[derive(Default)]
@@ -226,7 +229,7 @@ impl Builder {
     fn instances_of(
         &mut self,
         instances: &[(u32, Option<u32>, DMat4)],
-        shared: &[(Option<u32>, Option<(Child, Aabb)>)],
+        shared: &[SharedTree],
         objects: &[Object],
     ) -> Option<(Child, Aabb)> {
         let mut items = Vec::new();

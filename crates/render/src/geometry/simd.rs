@@ -25,6 +25,31 @@ pub(crate) trait Simd: Copy {
     fn lt(self, other: Self) -> u32;
     /// Lane i of `yes` where bit i of the comparison `self < limit` holds, else of `no`.
     fn select_lt(self, limit: Self, yes: Self, no: Self) -> Self;
+    /// Lane i of `yes` where bit i of `mask` is set, else of `no`.
+    fn select(mask: u32, yes: Self, no: Self) -> Self;
+}
+
+/// Work that is compiled once for each form of [`Simd`]. Its `run` must be `#[inline(always)]`, and so must all that
+/// it calls: what stays a function of its own is compiled without AVX2, and calls every intrinsic out of line.
+pub(crate) trait Kernel {
+    type Output;
+    fn run<S: Simd>(self) -> Self::Output;
+}
+
+/// Runs a kernel in the widest form that the processor has.
+pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(target_arch = "x86_64")]
+    if has_avx2() {
+        // SAFETY: the processor was asked for AVX2.
+        return unsafe { run_avx2(kernel) };
+    }
+    kernel.run::<Portable>()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+fn run_avx2<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<Avx2>()
 }
 
 /// Plain arrays: compiled with whatever the target has at least (SSE2, NEON).
@@ -99,6 +124,10 @@ impl Simd for Portable {
     #[inline(always)]
     fn select_lt(self, limit: Self, yes: Self, no: Self) -> Self {
         Portable(std::array::from_fn(|i| if self.0[i] < limit.0[i] { yes.0[i] } else { no.0[i] }))
+    }
+    #[inline(always)]
+    fn select(mask: u32, yes: Self, no: Self) -> Self {
+        Portable(std::array::from_fn(|i| if mask >> i & 1 != 0 { yes.0[i] } else { no.0[i] }))
     }
 }
 
@@ -179,6 +208,14 @@ mod avx2 {
         fn select_lt(self, limit: Self, yes: Self, no: Self) -> Self {
             unsafe { Avx2(_mm256_blendv_ps(no.0, yes.0, _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, limit.0))) }
         }
+        #[inline(always)]
+        fn select(mask: u32, yes: Self, no: Self) -> Self {
+            unsafe {
+                let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+                let set = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(mask as i32), bits), bits);
+                Avx2(_mm256_blendv_ps(no.0, yes.0, _mm256_castsi256_ps(set)))
+            }
+        }
     }
 }
 
@@ -217,6 +254,11 @@ impl<S: Simd> Vec3x8<S> {
     #[inline(always)]
     pub fn sub(self, o: Self) -> Self {
         Vec3x8 { x: self.x.sub(o.x), y: self.y.sub(o.y), z: self.z.sub(o.z) }
+    }
+    /// Component by component.
+    #[inline(always)]
+    pub fn mul(self, o: Self) -> Self {
+        Vec3x8 { x: self.x.mul(o.x), y: self.y.mul(o.y), z: self.z.mul(o.z) }
     }
     #[inline(always)]
     pub fn scale(self, s: S) -> Self {

@@ -1,1 +1,368 @@
+//! Traversal against brute force, packets against single rays, AVX2 against plain arrays, and the tree itself.
 
+use glam::{DMat4, DVec3, Vec3};
+
+use super::bvh::{Child, Kind};
+use super::kernel::{Lanes, sphere, triangle};
+use super::simd::{Kernel, Portable, Simd, Vec3x8};
+use super::*;
+use crate::sampler::hash;
+
+/// Uniform numbers, the same in every run.
+struct Random(u32);
+
+impl Random {
+    fn next(&mut self) -> f32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9);
+        (hash(self.0) >> 8) as f32 / 16_777_216.0
+    }
+
+    /// A point of the cube from -1 to 1.
+    fn point(&mut self) -> Vec3 {
+        Vec3::from_array(std::array::from_fn(|_| self.next() * 2.0 - 1.0))
+    }
+}
+
+fn place(matrix: DMat4) -> Placement {
+    Placement::new(matrix, vec![0]).expect("the tests place by regular maps")
+}
+
+fn here() -> Placement {
+    place(DMat4::IDENTITY)
+}
+
+fn soup(corners: impl IntoIterator<Item = [Vec3; 3]>) -> MeshShape {
+    let points: Vec<Vec3> = corners.into_iter().flatten().collect();
+    let triangles = (0..points.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    MeshShape { points, triangles, ..MeshShape::default() }
+}
+
+/// Small triangles all over the cube.
+fn random_soup(random: &mut Random, count: usize, size: f32) -> MeshShape {
+    soup((0..count).map(|_| {
+        let center = random.point();
+        [0; 3].map(|_| center + random.point() * size)
+    }))
+}
+
+/// Rays at the cube from outside and inside: some in bundles, as packets like them, some anywhere.
+fn rays(random: &mut Random, count: usize, scale: f32, center: Vec3) -> Vec<PlainRay> {
+    let mut rays = Vec::new();
+    while rays.len() < count {
+        let (origin, target) = (random.point() * 3.0, random.point());
+        let spread = [0.0, 0.01, 0.2, 2.0][rays.len() / 8 % 4];
+        for _ in 0..8 {
+            let origin = origin + random.point() * spread * 0.5;
+            let direction = (target + random.point() * spread - origin).normalize();
+            let t_max = if random.next() < 0.7 { f32::INFINITY } else { random.next() * 4.0 * scale };
+            let origin = center + origin * scale;
+            rays.push(PlainRay(Ray { origin, direction, t_min: 0.0, t_max, skip: Id::NONE }));
+        }
+    }
+    rays
+}
+
+struct PlainRay(Ray);
+
+impl AsRef<Ray> for PlainRay {
+    fn as_ref(&self) -> &Ray {
+        &self.0
+    }
+}
+
+/// Tests every primitive without a tree.
+fn brute_force(geometry: &Geometry, ray: &Ray) -> Hit {
+    let mut best = Hit { t: ray.t_max, ..Hit::NONE };
+    geometry.planes.iter().for_each(|plane| plane.intersect(ray, &mut best));
+    for (number, object) in geometry.objects.iter().enumerate() {
+        let number = number as u32;
+        let mut local = *ray;
+        if matches!(object.shape, Shape::Ellipsoid | Shape::MeshInstance(_)) {
+            local.origin = object.object_from_world.point(ray.origin);
+            local.direction = object.object_from_world.vector(ray.direction);
+        }
+        match object.shape {
+            Shape::Plane(_) => {}
+            Shape::Sphere { center, radius } => brute_sphere(&local, center, radius, number, &mut best),
+            Shape::Ellipsoid => brute_sphere(&local, Vec3::ZERO, 1.0, number, &mut best),
+            Shape::Mesh(mesh) | Shape::MeshInstance(mesh) => {
+                brute_mesh(&local, &geometry.meshes[mesh as usize], number, &mut best);
+            }
+        }
+    }
+    best
+}
+
+fn lanes(ray: &Ray) -> Lanes<Portable> {
+    Lanes {
+        origin: Vec3x8::splat(ray.origin),
+        direction: Vec3x8::splat(ray.direction),
+        t_min: Portable::splat(ray.t_min),
+    }
+}
+
+fn brute_sphere(ray: &Ray, center: Vec3, radius: f32, object: u32, best: &mut Hit) {
+    let [zero, t_max, radius] = [0.0, best.t, radius].map(Portable::splat);
+    if let Some(crossing) = sphere(&lanes(ray), Vec3x8::splat(center), radius, zero, t_max)
+        && crossing.mask != 0
+    {
+        best.improve(Hit { t: crossing.t.store()[0], u: 0.0, v: 0.0, id: Id { object, index: 0 } });
+    }
+}
+
+fn brute_mesh(ray: &Ray, mesh: &MeshShape, object: u32, best: &mut Hit) {
+    for index in 0..mesh.triangles.len() {
+        let id = Id { object, index: index as u32 };
+        let corners = mesh.triangle_points(index).map(Vec3x8::splat);
+        let crossing = triangle(&lanes(ray), corners, Portable::splat(0.0), Portable::splat(best.t));
+        if let Some(crossing) = crossing.filter(|crossing| crossing.mask != 0 && id != ray.skip) {
+            best.improve(Hit { t: crossing.t.store()[0], u: crossing.u.store()[0], v: crossing.v.store()[0], id });
+        }
+    }
+}
+
+fn bits(hit: &Hit) -> (u32, u32, u32, Id) {
+    (hit.t.to_bits(), hit.u.to_bits(), hit.v.to_bits(), hit.id)
+}
+
+/// Traces rays in every way there is, and compares.
+fn check(name: &str, geometry: &Geometry, rays: &[PlainRay]) {
+    let mut scratch = Scratch::default();
+    let (mut hits, mut blocked) = (Vec::new(), Vec::new());
+    geometry.closest(rays, &mut hits, &mut scratch);
+    geometry.occluded(rays, &mut blocked, &mut scratch);
+    let (mut plain_hits, mut plain_blocked) = (Vec::new(), Vec::new());
+    Closest { geometry, rays, hits: &mut plain_hits, scratch: &mut scratch }.run::<Portable>();
+    Occluded { geometry, rays, blocked: &mut plain_blocked, scratch: &mut scratch }.run::<Portable>();
+    assert_eq!(blocked, plain_blocked, "{name}: shadows of AVX2 and arrays");
+    for (i, PlainRay(ray)) in rays.iter().enumerate() {
+        let mut alone = Hit { t: ray.t_max, ..Hit::NONE };
+        geometry.trace::<Portable, false>(ray, &mut alone, &mut scratch);
+        assert_eq!(bits(&hits[i]), bits(&plain_hits[i]), "{name}: ray {i} of AVX2 and arrays");
+        assert_eq!(bits(&hits[i]), bits(&alone), "{name}: ray {i} in a packet and alone");
+        assert_eq!(blocked[i], hits[i].id != Id::NONE, "{name}: shadow and hit of ray {i}");
+        let brute = brute_force(geometry, ray);
+        assert_eq!(hits[i].id == Id::NONE, brute.id == Id::NONE, "{name}: ray {i}: {:?}, {brute:?}", hits[i]);
+        let close = hits[i].t == brute.t || (hits[i].t - brute.t).abs() <= 1e-5 * brute.t;
+        assert!(close, "{name}: ray {i}: {:?}, {brute:?}", hits[i]);
+        assert!(hits[i].t != brute.t || hits[i].id == brute.id, "{name}: ray {i}: {:?}, {brute:?}", hits[i]);
+    }
+}
+
+fn plan(fill: impl FnOnce(&mut Plan)) -> Geometry {
+    let mut plan = Plan::default();
+    fill(&mut plan);
+    let geometry = plan.finish();
+    validate(&geometry);
+    geometry
+}
+
+/// Every primitive lies in exactly one leaf, and inside all boxes above it.
+fn validate(geometry: &Geometry) {
+    let tree = &geometry.tree;
+    let mut seen = vec![[0u32; 3]; tree.triangles.len().max(tree.spheres.len()).max(tree.instances.len())];
+    let roots = std::iter::once(tree.root).chain(distinct(tree.instances.iter().map(|leaf| leaf.root)));
+    for root in roots.filter(|&root| root != Child::NONE) {
+        let mut open = vec![(root, Vec::new())];
+        while let Some((child, boxes)) = open.pop() {
+            if !child.is_node() {
+                seen[child.index()][child.kind() as usize] += 1;
+                contained(tree, child, &boxes);
+                continue;
+            }
+            let node = &tree.nodes[child.index()];
+            for slot in (0..8).filter(|&slot| node.children[slot] != Child::NONE) {
+                let side = |side: usize| Vec3::from_array([0, 1, 2].map(|axis: usize| node.bounds[axis][side][slot]));
+                open.push((node.children[slot], [&boxes[..], &[(side(0), side(1))]].concat()));
+            }
+        }
+    }
+    let lengths = [tree.triangles.len(), tree.spheres.len(), tree.instances.len()];
+    for (kind, &length) in lengths.iter().enumerate() {
+        assert!(seen[..length].iter().all(|counts| counts[kind] == 1), "every leaf has one place");
+    }
+    let mut ids: Vec<_> = tree.triangles.iter().flat_map(|block| block.ids).filter(|&id| id != Id::NONE).collect();
+    let count = ids.len();
+    ids.sort_by_key(|id| (id.object, id.index));
+    ids.dedup();
+    let shared = tree.instances.len() > 1;
+    assert!(shared || ids.len() == count, "every triangle lies in one leaf");
+}
+
+fn distinct(children: impl Iterator<Item = Child>) -> Vec<Child> {
+    let mut all = Vec::new();
+    children.for_each(|child| all.extend((!all.contains(&child)).then_some(child)));
+    all
+}
+
+fn contained(tree: &traverse::Tree, leaf: Child, boxes: &[(Vec3, Vec3)]) {
+    let inside = |p: Vec3| boxes.iter().all(|(min, max)| p.cmpge(*min).all() && p.cmple(*max).all());
+    match leaf.kind() {
+        Kind::Triangles => {
+            let block = &tree.triangles[leaf.index()];
+            for lane in (0..8).filter(|&lane| block.ids[lane] != Id::NONE) {
+                for vertex in &block.vertices {
+                    assert!(inside(Vec3::new(vertex[0][lane], vertex[1][lane], vertex[2][lane])));
+                }
+            }
+        }
+        Kind::Spheres => {
+            let block = &tree.spheres[leaf.index()];
+            for lane in (0..8).filter(|&lane| block.ids[lane] != Id::NONE) {
+                let center = Vec3::from_array([0, 1, 2].map(|axis: usize| block.centers[axis][lane]));
+                assert!(inside(center - block.radii[lane]) && inside(center + block.radii[lane]));
+            }
+        }
+        Kind::Instance => {}
+    }
+}
+
+#[test]
+fn triangles_spheres_planes_and_instances_are_met_as_by_brute_force() {
+    for seed in 0..6 {
+        let mut random = Random(seed * 1000);
+        let geometry = plan(|plan| {
+            plan.mesh(random_soup(&mut random, 300, 0.3), &[here()]);
+            let turned = DMat4::from_rotation_y(1.0) * DMat4::from_scale(DVec3::new(0.3, 1.0, 0.5));
+            let moved = DMat4::from_translation(DVec3::new(0.5, 0.2, -0.3)) * DMat4::from_scale(DVec3::splat(0.5));
+            plan.mesh(random_soup(&mut random, 100, 0.3), &[place(turned), place(moved)]);
+            for _ in 0..40 {
+                let at = DMat4::from_translation(random.point().as_dvec3());
+                let size = f64::from(random.next()) * 0.2 + 0.01;
+                plan.sphere(&place(at * DMat4::from_scale(DVec3::splat(size))));
+                plan.sphere(&place(at * DMat4::from_scale(DVec3::new(size, 0.1, 0.05))));
+            }
+            plan.plane(Vec3::NEG_Y, Vec3::new(0.1, 1.0, 0.0), None, &here());
+            plan.plane(Vec3::Z * 2.0, Vec3::Z, None, &here());
+        });
+        check("mixed", &geometry, &rays(&mut random, 2000, 1.0, Vec3::ZERO));
+    }
+}
+
+#[test]
+fn scenes_of_few_primitives_are_met_as_by_brute_force() {
+    for count in [0, 1, 2, 7, 8, 9, 65] {
+        let mut random = Random(count as u32);
+        let triangles = plan(|plan| plan.mesh(random_soup(&mut random, count, 1.0), &[here()]));
+        check("triangles", &triangles, &rays(&mut random, 500, 1.0, Vec3::ZERO));
+        let spheres = plan(|plan| {
+            for _ in 0..count {
+                let at = DMat4::from_translation(random.point().as_dvec3());
+                plan.sphere(&place(at * DMat4::from_scale(DVec3::splat(0.3))));
+            }
+        });
+        check("spheres", &spheres, &rays(&mut random, 500, 1.0, Vec3::ZERO));
+    }
+    let mut random = Random(1);
+    let plane = plan(|plan| plan.plane(Vec3::ZERO, Vec3::Y, None, &here()));
+    check("plane", &plane, &rays(&mut random, 500, 1.0, Vec3::ZERO));
+}
+
+#[test]
+fn degenerate_scenes_are_met_as_by_brute_force() {
+    let mut random = Random(77);
+    let one = [random.point(), random.point(), random.point()];
+    let degenerate = |random: &mut Random, kind: u32| {
+        let (p, q) = (random.point(), random.point());
+        match kind {
+            0 => [p, p, q],
+            1 => [p, p + (q - p) * 0.5, q],
+            2 => [p, q, q + random.point() * 1e-6],
+            _ => [p, p, p],
+        }
+    };
+    let meshes = [
+        ("coincident", soup((0..500).map(|_| one))),
+        ("slivers", soup((0..500).map(|i| degenerate(&mut random, i % 4)))),
+        ("one point", soup((0..500).map(|_| [Vec3::ONE; 3]))),
+        ("nested", soup((1..3000).map(|i| one.map(|p| p * (i as f32 / 1500.0))))),
+        (
+            "grid",
+            soup((0..512).map(|i| {
+                let at = Vec3::new((i % 8) as f32, (i / 8 % 8) as f32, (i / 64) as f32) / 4.0 - Vec3::ONE;
+                [at, at + Vec3::X * 0.25, at + Vec3::Y * 0.25]
+            })),
+        ),
+    ];
+    for (name, mesh) in meshes {
+        let geometry = plan(|plan| plan.mesh(mesh, &[here()]));
+        check(name, &geometry, &rays(&mut random, 600, 1.0, Vec3::ZERO));
+    }
+    let center = Vec3::new(1e5, -3e4, 2e5);
+    let mut far = random_soup(&mut random, 300, 0.4);
+    far.points.iter_mut().for_each(|p| *p = center + *p * 100.0);
+    let geometry = plan(|plan| plan.mesh(far, &[here()]));
+    check("far away", &geometry, &rays(&mut random, 1000, 100.0, center));
+}
+
+#[test]
+fn rays_along_the_axes_and_in_the_planes_of_triangles_are_met_as_by_brute_force() {
+    let mut random = Random(5);
+    let flat = soup((0..200).map(|_| {
+        let at = random.point();
+        [0; 3].map(|_| (at + random.point() * 0.5).with_z(0.25))
+    }));
+    let geometry = plan(|plan| plan.mesh(flat, &[here()]));
+    let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    let rays: Vec<PlainRay> = (0..960)
+        .map(|i| {
+            let direction = axes[i / 16 % 6];
+            let origin = random.point() - direction * 2.0;
+            let origin = if i % 2 == 0 { origin } else { origin.with_z(0.25) };
+            PlainRay(Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE })
+        })
+        .collect();
+    check("axes", &geometry, &rays);
+}
+
+/// A sphere of triangles with bumps; neighbours share their vertices.
+fn bumpy_ball(random: &mut Random, rings: u32) -> MeshShape {
+    let sectors = 2 * rings;
+    let mut points = vec![Vec3::Y, Vec3::NEG_Y];
+    for ring in 1..rings {
+        for sector in 0..sectors {
+            let (polar, around) = (f64::from(ring) / f64::from(rings), f64::from(sector) / f64::from(sectors));
+            let (sin, cos) = (polar * std::f64::consts::PI).sin_cos();
+            let (s, c) = (around * std::f64::consts::TAU).sin_cos();
+            points.push(DVec3::new(sin * c, cos, sin * s).as_vec3() * (0.7 + 0.3 * random.next()));
+        }
+    }
+    let at = |ring: u32, sector: u32| 2 + (ring - 1) * sectors + sector % sectors;
+    let mut triangles = Vec::new();
+    for sector in 0..sectors {
+        triangles.push([0, at(1, sector), at(1, sector + 1)]);
+        triangles.push([1, at(rings - 1, sector + 1), at(rings - 1, sector)]);
+        for ring in 1..rings - 1 {
+            triangles.push([at(ring, sector), at(ring + 1, sector), at(ring + 1, sector + 1)]);
+            triangles.push([at(ring, sector), at(ring + 1, sector + 1), at(ring, sector + 1)]);
+        }
+    }
+    MeshShape { points, triangles, ..MeshShape::default() }
+}
+
+#[test]
+fn no_ray_leaves_a_closed_mesh_between_its_triangles() {
+    let mut random = Random(9);
+    let mesh = bumpy_ball(&mut random, 20);
+    // Straight at a vertex a ray may slip through: there no two triangles decide alone.
+    let mut targets = Vec::new();
+    for triangle in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.triangle_points(triangle);
+        targets.extend([(a + b) * 0.5, b + (c - b) * random.next(), c + (a - c) * random.next(), (a + b + c) / 3.0]);
+    }
+    let geometry = plan(|plan| plan.mesh(mesh, &[here()]));
+    let rays: Vec<PlainRay> = targets
+        .iter()
+        .map(|&target| {
+            let origin = random.point() * 0.1;
+            let direction = (target - origin).normalize();
+            PlainRay(Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE })
+        })
+        .collect();
+    let mut hits = Vec::new();
+    geometry.closest(&rays, &mut hits, &mut Scratch::default());
+    for (i, hit) in hits.iter().enumerate() {
+        assert!(hit.id != Id::NONE, "ray {i} towards {} slips through", targets[i]);
+    }
+    check("ball", &geometry, &rays);
+}
