@@ -19,6 +19,12 @@ impl SampleKey {
         SampleKey { pixel: hash(x ^ hash(y ^ seed)), index }
     }
 
+    /// The key of another sample of the same pixel.
+    #[inline]
+    pub fn with_index(self, index: u32) -> Self {
+        SampleKey { index, ..self }
+    }
+
     /// The pair of dimensions `dimension`, each in [0, 1).
     #[inline]
     pub fn pair(&self, dimension: u32) -> [f32; 2] {

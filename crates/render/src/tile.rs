@@ -97,6 +97,16 @@ struct Tile {
     active: Vec<u32>,
 }
 
+/// One thread's room for the waves of its tiles.
+#[derive(Default)]
+struct Room {
+    workspace: Workspace,
+    samples: Vec<CameraSample>,
+    /// The pixel of each sample.
+    targets: Vec<u32>,
+    results: Vec<SampleResult>,
+}
+
 /// One pass: every active pixel gets the samples `first..end` of its sequence.
 #[derive(Debug, Clone, Copy)]
 struct Pass {
@@ -202,12 +212,12 @@ impl<'a, R: Rules> Job<'a, R> {
         self.total.fetch_add(work, Ordering::Relaxed);
         let gathered = tiles
             .par_iter_mut()
-            .map_init(Workspace::default, |workspace, tile| {
-                workspace.queues.stats = Stats::default();
+            .map_init(Room::default, |room, tile| {
+                room.workspace.queues.stats = Stats::default();
                 if !tile.active.is_empty() && !self.observer.cancelled() {
-                    self.tile(tile, pass, workspace);
+                    self.tile(tile, pass, room);
                 }
-                workspace.queues.stats
+                room.workspace.queues.stats
             })
             .reduce(Stats::default, Stats::plus);
         *stats = stats.plus(gathered);
@@ -215,44 +225,36 @@ impl<'a, R: Rules> Job<'a, R> {
     }
 
     /// Adds the samples of a pass to the active pixels of a tile, a wave at a time.
-    fn tile(&self, tile: &mut Tile, pass: Pass, workspace: &mut Workspace) {
-        let mut samples: Vec<CameraSample> = Vec::with_capacity(WAVE);
-        // Pixel and weight of each sample of the wave.
-        let mut targets: Vec<(u32, f32)> = Vec::with_capacity(WAVE);
-        let mut results = Vec::with_capacity(WAVE);
+    fn tile(&self, tile: &mut Tile, pass: Pass, room: &mut Room) {
         let active = std::mem::take(&mut tile.active);
         for &pixel in &active {
-            let (x, y) = (tile.rect.0[0] + pixel % tile.rect.width(), tile.rect.0[1] + pixel / tile.rect.width());
+            let at = [tile.rect.0[0] + pixel % tile.rect.width(), tile.rect.0[1] + pixel / tile.rect.width()];
             if pass.restart {
                 let seen = tile.pixels[pixel as usize].seen;
                 tile.pixels[pixel as usize] = Accumulator { seen, ..Accumulator::EMPTY };
             }
-            for index in pass.first..pass.end {
-                let (sample, weight) = self.scene.camera_sample(x, y, index, pass.end, self.options.seed);
-                samples.push(sample);
-                targets.push((pixel, weight));
-                if samples.len() == WAVE {
-                    self.wave(tile, workspace, &mut samples, &mut targets, &mut results);
+            let mut next = pass.first;
+            while next < pass.end {
+                let end = pass.end.min(next + (WAVE - room.samples.len()) as u32);
+                self.scene.camera_samples(at, next..end, pass.end, self.options.seed, &mut room.samples);
+                room.targets.resize(room.samples.len(), pixel);
+                next = end;
+                if room.samples.len() == WAVE {
+                    self.wave(tile, room);
                     if self.observer.cancelled() {
                         return;
                     }
                 }
             }
         }
-        self.wave(tile, workspace, &mut samples, &mut targets, &mut results);
+        self.wave(tile, room);
     }
 
-    fn wave(
-        &self,
-        tile: &mut Tile,
-        workspace: &mut Workspace,
-        samples: &mut Vec<CameraSample>,
-        targets: &mut Vec<(u32, f32)>,
-        results: &mut Vec<SampleResult>,
-    ) {
+    fn wave(&self, tile: &mut Tile, room: &mut Room) {
+        let Room { workspace, samples, targets, results } = room;
         workspace.trace(self.scene, self.rules, samples, results);
-        for (result, &(pixel, weight)) in results.iter().zip(targets.iter()) {
-            tile.pixels[pixel as usize].add(result, weight);
+        for ((result, sample), &pixel) in results.iter().zip(&*samples).zip(&*targets) {
+            tile.pixels[pixel as usize].add(result, sample.weight);
         }
         let done = self.done.fetch_add(samples.len() as u64, Ordering::Relaxed) + samples.len() as u64;
         self.observer.progress(done, self.total.load(Ordering::Relaxed));

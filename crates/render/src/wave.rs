@@ -114,6 +114,8 @@ pub(crate) struct CameraSample {
     /// The ray, unless the lens sees nothing there.
     pub ray: Option<(Vec3, Vec3)>,
     pub key: SampleKey,
+    /// What it counts in its pixel.
+    pub weight: f32,
 }
 
 /// What comes of a camera sample.
@@ -146,6 +148,12 @@ pub(crate) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
+    /// The batch in pieces of up to `size` members.
+    pub fn chunks(&self, size: usize) -> impl Iterator<Item = Batch<'a>> + use<'a> {
+        let Batch { scene, material, members, rays, hits } = *self;
+        members.chunks(size).map(move |members| Batch { scene, material, members, rays, hits })
+    }
+
     /// The members with their rays and hits.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&'a PathRay, &'a Hit)> + use<'a> {
         let (rays, hits) = (self.rays, self.hits);
@@ -181,9 +189,12 @@ pub(crate) struct Workspace {
     /// Positions of hits, sorted by material, and where each material starts.
     sorted: Vec<u32>,
     starts: Vec<u32>,
+    next: Vec<u32>,
     materials: Vec<u32>,
     textures: TextureBatch,
     colors: Vec<Vec3>,
+    /// What the camera samples are covered by.
+    coverage: Vec<f32>,
     scratch: Scratch,
     pub queues: Queues,
 }
@@ -201,7 +212,6 @@ impl Workspace {
         results: &mut Vec<SampleResult>,
     ) {
         self.start(rules, samples);
-        let mut coverage = vec![0.0; samples.len()];
         let mut first = true;
         while !self.queues.rays.is_empty() {
             std::mem::swap(&mut self.rays, &mut self.queues.rays);
@@ -212,12 +222,12 @@ impl Workspace {
             for (i, ray) in self.rays.iter().enumerate() {
                 if self.materials[i] != MISS {
                     if first {
-                        coverage[ray.node as usize] = 1.0;
+                        self.coverage[ray.node as usize] = 1.0;
                     }
                 } else if let Some(light) = rules.miss(scene, ray) {
                     self.queues.nodes[ray.node as usize].direct += ray.weight * light;
                     if first {
-                        coverage[ray.node as usize] = 1.0;
+                        self.coverage[ray.node as usize] = 1.0;
                     }
                 }
             }
@@ -225,11 +235,13 @@ impl Workspace {
             self.light(scene);
             first = false;
         }
-        self.resolve(rules, &coverage, results);
+        self.resolve(rules, results);
     }
 
     /// Queues the camera rays.
     fn start<R: Rules>(&mut self, rules: &R, samples: &[CameraSample]) {
+        self.coverage.clear();
+        self.coverage.resize(samples.len(), 0.0);
         let queues = &mut self.queues;
         queues.rays.clear();
         queues.shadows.clear();
@@ -273,12 +285,12 @@ impl Workspace {
         for material in 0..count {
             self.starts[material + 1] += self.starts[material];
         }
-        let mut next = self.starts.clone();
+        self.next.clone_from(&self.starts);
         self.sorted.clear();
         self.sorted.resize(self.starts[count] as usize, 0);
         for (i, &material) in self.materials.iter().enumerate() {
             if material != MISS {
-                let at = &mut next[material as usize];
+                let at = &mut self.next[material as usize];
                 self.sorted[*at as usize] = i as u32;
                 *at += 1;
             }
@@ -312,8 +324,8 @@ impl Workspace {
     }
 
     /// Hands light from children to parents, and from roots to the results.
-    fn resolve<R: Rules>(&mut self, rules: &R, coverage: &[f32], results: &mut Vec<SampleResult>) {
-        let nodes = &mut self.queues.nodes;
+    fn resolve<R: Rules>(&mut self, rules: &R, results: &mut Vec<SampleResult>) {
+        let (nodes, coverage) = (&mut self.queues.nodes, &self.coverage);
         for i in (coverage.len()..nodes.len()).rev() {
             let node = nodes[i];
             nodes[node.parent as usize].indirect += node.weight * rules.finish(&node);

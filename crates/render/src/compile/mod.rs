@@ -4,6 +4,8 @@
 mod materials;
 mod objects;
 
+use std::ops::Range;
+
 use glam::Vec3;
 use jaspe_scene::description::{Camera as CameraDescription, Filter, Lens, LightKind, View};
 use jaspe_scene::{Diagnostic, Diagnostics, Dialect, Loader, Scene};
@@ -73,11 +75,19 @@ impl CompiledScene {
         }
     }
 
-    /// Sample `index` of `end` of a pixel, and what it counts there.
-    pub(crate) fn camera_sample(&self, x: u32, y: u32, index: u32, end: u32, seed: u64) -> (CameraSample, f32) {
-        let key = SampleKey::new(x, y, index, seed);
+    /// Appends samples of one pixel, which is to have `end` of them.
+    pub(crate) fn camera_samples(
+        &self,
+        [x, y]: [u32; 2],
+        indices: Range<u32>,
+        end: u32,
+        seed: u64,
+        samples: &mut Vec<CameraSample>,
+    ) {
+        let key = SampleKey::new(x, y, 0, seed);
         match &self.meaning {
-            &Meaning::Sunflow { ref camera, ref filter, jitter, .. } => {
+            &Meaning::Sunflow { ref camera, ref filter, jitter, .. } => samples.extend(indices.map(|index| {
+                let key = key.with_index(index);
                 // A single sample stands for the pixel's centre. Several lie alike in all pixels, so that edges come
                 // out smooth; with `jitter`, every pixel has its own.
                 let ([dx, dy], weight) = match (end, jitter) {
@@ -87,15 +97,14 @@ impl CompiledScene {
                 };
                 let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
                 let ray = camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, lens);
-                (CameraSample { ray, key }, weight)
-            }
+                CameraSample { ray, key, weight }
+            })),
             Meaning::Report { rules } => {
-                let (edge, repeats) = match self.sampling {
-                    Sampling::Report { edge, repeats } => (edge, repeats),
-                    _ => (1, end),
+                let grid = match self.sampling {
+                    Sampling::Report { edge, repeats } => [edge, repeats],
+                    _ => [1, end],
                 };
-                let [px, py] = ReportCamera::position(x, y, &key, edge, repeats);
-                (CameraSample { ray: Some(rules.camera.ray(px, py)), key }, 1.0)
+                rules.camera.samples([x, y], grid, indices, key, samples);
             }
         }
     }
@@ -258,7 +267,7 @@ fn note_darkness(scene: &Scene, compiled: &CompiledScene, diagnostics: &mut Diag
         .map(|i| {
             let at = |k: usize, cell: u32| (cell as f32 + 0.5) / PROBE[k] as f32 * compiled.size[k] as f32;
             let ray = camera.ray(at(0, i % PROBE[0]), at(1, i / PROBE[0]), [0.5; 2]);
-            CameraSample { ray, key: SampleKey::new(i, 0, 0, RenderOptions::default().seed) }
+            CameraSample { ray, key: SampleKey::new(i, 0, 0, RenderOptions::default().seed), weight: 1.0 }
         })
         .collect();
     let mut results = Vec::new();
