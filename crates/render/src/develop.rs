@@ -236,6 +236,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::disallowed_methods, reason = "our curve is held against the platform's power function")]
     fn curve_agrees_with_the_platform_power_function() {
         for i in 0..=100_000 {
             let v = f64::from(i) / 100_000.0;

@@ -1,5 +1,7 @@
 //! What every material promises, walked over the list of all.
 
+#![allow(clippy::disallowed_methods, reason = "our functions are held against the platform's")]
+
 use jaspe_noise::simd::Level;
 use jaspe_texture::declare::{Kind, Value};
 use jaspe_texture::{BuildError, Space, Texture};
