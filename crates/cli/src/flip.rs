@@ -4,6 +4,11 @@
 //! Difference Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), 2020. Section numbers
 //! below are the paper's. The viewing conditions are its standard ones.
 
+#![allow(
+    clippy::disallowed_methods,
+    reason = "a measure is printed to six digits; no pixel of a rendering depends on it"
+)]
+
 use jaspe_render::srgb_decode;
 
 /// Pixels per degree of the field of view: a monitor 0.7 m wide, 3840 pixels across, seen from 0.7 m.
