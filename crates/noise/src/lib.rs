@@ -34,6 +34,9 @@
 //! then), a seed (0 is the published table), and, but for simplex noise, any integer period along each axis:
 //! [`Noise::with_period`]. The first three and simplex noise repeat after 256 cells in any case.
 //!
+//! Sums add octaves plainly, by their absolute value, or as multifractals ([`Combine`]), with any lacunarity and gain; the
+//! last octave may fade in ([`Sum::with_octaves`]), and [`Sum::fill_filtered`] fades what a sample's footprint cannot resolve.
+//!
 //! # Promises
 //!
 //! * One evaluation, [`Noise::value`] and [`Sum::value`], generic over the number type ([`Real`]): `f64`, `f32`,
@@ -55,6 +58,7 @@
 #![deny(unsafe_code)]
 
 mod basis;
+mod filter;
 pub mod math;
 mod noise;
 mod number;

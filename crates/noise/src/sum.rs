@@ -3,6 +3,7 @@
 //! The multifractal sums follow F. K. Musgrave in Ebert et al., "Texturing and Modeling: A Procedural Approach", chapter
 //! "Procedural Fractal Terrains", with his offsets and with the amplitudes as powers of the gain.
 
+use crate::filter::Fade;
 use crate::noise::{Map, Noise, map};
 use crate::number::{Dual, Real};
 use crate::simd::{self, Kernel, Level, Terms};
@@ -126,18 +127,42 @@ impl Sum {
     /// The value at a point of two or three dimensions (two: the slice z = 0), in the precision of the number type.
     #[inline(always)]
     pub fn value<R: Real, const D: usize>(&self, point: [R; D]) -> R {
+        self.evaluate(point, None)
+    }
+
+    /// The sum as it looks through a sample of the side `footprint`, in the units of the point: each octave fades to its
+    /// mean as the footprint grows past its cells, so that what a picture cannot resolve turns even rather than noisy.
+    /// At a footprint of 0 this is [`Sum::value`].
+    ///
+    /// The root mean square of the difference from the true average over the footprint, for improved noise of five octaves,
+    /// is below 0.08 (plain) and 0.06 (absolute) everywhere, and below 0.025 from a footprint of four units on. (What
+    /// remains comes from the neighbours, of which the value at the centre does not know.)
+    #[inline(always)]
+    pub fn value_filtered<R: Real, const D: usize>(&self, point: [R; D], footprint: R) -> R {
+        self.evaluate(point, Some(footprint))
+    }
+
+    #[inline(always)]
+    fn evaluate<R: Real, const D: usize>(&self, point: [R; D], footprint: Option<R>) -> R {
+        let folded = matches!(self.combine, Combine::Absolute | Combine::Ridged);
+        let fade = Fade::of(self.noise.basis(), folded, D);
         let terms = self.terms();
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
         let (mut sum, mut weight) = (zero, one);
         let mut frequency = 1.0;
         for octave in 0..self.octaves {
             let amplitude = R::constant(terms.amplitude(octave));
-            let noise = self.octave(point, frequency);
+            let mut noise = self.octave(point, frequency);
+            if folded {
+                noise = noise.abs();
+            }
+            if let Some(footprint) = footprint {
+                noise = fade.apply(noise, footprint * R::constant(frequency));
+            }
             let term = match self.combine {
-                Combine::Plain => amplitude * noise,
-                Combine::Absolute => amplitude * noise.abs(),
+                Combine::Plain | Combine::Absolute => amplitude * noise,
                 Combine::Ridged => {
-                    let ridge = one - noise.abs();
+                    let ridge = one - noise;
                     let signal = weight * (ridge * ridge);
                     let next = signal * R::constant(RIDGED_WEIGHT);
                     weight = R::select(one.less(next), one, next);
@@ -200,6 +225,42 @@ impl Sum {
         }
     }
 
+    /// The values at many points, each with its footprint: the same bits as [`Sum::value_filtered`] in single precision.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn fill_filtered<const D: usize>(&self, points: [&[f32]; D], footprints: &[f32], values: &mut [f32]) {
+        self.fill_filtered_at(simd::level(), points, footprints, values);
+    }
+
+    /// [`Sum::fill_filtered`] with the instructions of a level, at most those of the machine. For tests and measurements.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn fill_filtered_at<const D: usize>(
+        &self,
+        level: Level,
+        points: [&[f32]; D],
+        footprints: &[f32],
+        values: &mut [f32],
+    ) {
+        const { assert!(D == 2 || D == 3, "a noise has two or three dimensions") };
+        match D {
+            2 => self.map_filtered_plane(level, [points[0], points[1], footprints], values),
+            _ => self.map_filtered_space(level, [points[0], points[1], points[D - 1], footprints], values),
+        }
+    }
+
+    #[inline(never)]
+    fn map_filtered_plane(&self, level: Level, inputs: [&[f32]; 3], values: &mut [f32]) {
+        simd::map_at(level, &Filtered(self), inputs, values);
+    }
+
+    #[inline(never)]
+    fn map_filtered_space(&self, level: Level, inputs: [&[f32]; 4], values: &mut [f32]) {
+        simd::map_at(level, &Filtered(self), inputs, values);
+    }
+
     #[inline(always)]
     fn terms(&self) -> Terms {
         Terms {
@@ -221,6 +282,23 @@ impl<const D: usize> Kernel<D> for Sum {
     #[inline(always)]
     fn run<R: Real>(&self, point: [R; D]) -> R {
         self.value(point)
+    }
+}
+
+/// A sum whose last input is the footprint.
+struct Filtered<'a>(&'a Sum);
+
+impl Kernel<3> for Filtered<'_> {
+    #[inline(always)]
+    fn run<R: Real>(&self, [x, y, footprint]: [R; 3]) -> R {
+        self.0.value_filtered([x, y], footprint)
+    }
+}
+
+impl Kernel<4> for Filtered<'_> {
+    #[inline(always)]
+    fn run<R: Real>(&self, [x, y, z, footprint]: [R; 4]) -> R {
+        self.0.value_filtered([x, y, z], footprint)
     }
 }
 

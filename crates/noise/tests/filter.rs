@@ -1,0 +1,88 @@
+//! The band limit: filtered sums against averages over the footprint.
+
+use jaspe_noise::simd::Level;
+use jaspe_noise::{Basis, Combine, Noise, Sum};
+
+/// Numbers in [-1, 1), reproducible.
+fn random_numbers() -> impl FnMut() -> f32 {
+    let mut state = 88_172_645_463_325_252u64;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 40) as f32 / (1u64 << 23) as f32 - 1.0
+    }
+}
+
+/// The root mean square of the difference between the filtered sum and the average of 1024 samples over the footprint.
+fn difference(sum: &Sum, footprint: f32) -> f32 {
+    const FOOTPRINTS: usize = 300;
+    const SAMPLES: usize = 1024;
+    let mut random = random_numbers();
+    let mut squares = 0.0;
+    for _ in 0..FOOTPRINTS {
+        let centre = [random() * 100.0, random() * 100.0, random() * 100.0];
+        let samples: [Vec<f32>; 3] =
+            centre.map(|coordinate| (0..SAMPLES).map(|_| coordinate + 0.5 * footprint * random()).collect());
+        let mut values = vec![0.0; SAMPLES];
+        sum.fill(samples.each_ref().map(Vec::as_slice), &mut values);
+        let average = values.iter().sum::<f32>() / SAMPLES as f32;
+        squares += (sum.value_filtered(centre, footprint) - average).powi(2) / FOOTPRINTS as f32;
+    }
+    squares.sqrt()
+}
+
+#[test]
+fn filtered_sums_are_near_the_average_over_the_footprint() {
+    for (combine, bound) in [(Combine::Plain, 0.08), (Combine::Absolute, 0.06)] {
+        let sum = Sum::new(Noise::new(Basis::Improved, 0), combine, 5);
+        for footprint in [0.03, 0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 8.0, 30.0] {
+            let found = difference(&sum, footprint);
+            let bound = if footprint >= 4.0 { 0.025 } else { bound };
+            assert!(found < bound, "{combine:?} at {footprint}: {found}");
+        }
+    }
+}
+
+#[test]
+fn without_a_footprint_nothing_is_lost_and_with_a_large_one_the_mean_remains() {
+    let mut random = random_numbers();
+    for &basis in Basis::ALL {
+        for &combine in Combine::ALL {
+            let sum = Sum::new(Noise::new(basis, 0), combine, 4);
+            let mut mean = 0.0;
+            let mut last = None;
+            for _ in 0..20_000 {
+                let point = [random() * 100.0, random() * 100.0, random() * 100.0];
+                let value = sum.value(point);
+                assert_eq!(sum.value_filtered(point, 0.0).to_bits(), value.to_bits());
+                mean += f64::from(value) / 20_000.0;
+                let even = sum.value_filtered(point, 1e4);
+                assert!((*last.get_or_insert(even) - even).abs() < 1e-6f32, "{basis:?} {combine:?}");
+            }
+            if matches!(combine, Combine::Plain | Combine::Absolute) {
+                let even = f64::from(last.unwrap());
+                assert!((even - mean).abs() < 0.03, "{basis:?} {combine:?}: {even}, mean {mean}");
+            }
+        }
+    }
+}
+
+#[test]
+fn filtered_sums_have_the_same_bits_at_every_level() {
+    let mut random = random_numbers();
+    let mut column = |scale: f32| -> Vec<f32> { (0..333).map(|_| random() * scale).collect() };
+    let (x, y, z, footprints) = (column(40.0), column(40.0), column(40.0), column(2.0));
+    for &basis in Basis::ALL {
+        for &combine in Combine::ALL {
+            let sum = Sum::new(Noise::new(basis, 1), combine, 5);
+            for level in Level::ALL {
+                let mut values = vec![0.0; 333];
+                sum.fill_filtered_at(level, [&x, &y, &z], &footprints, &mut values);
+                assert!((0..333).all(|i| values[i] == sum.value_filtered([x[i], y[i], z[i]], footprints[i])));
+                sum.fill_filtered_at(level, [&x, &y], &footprints, &mut values);
+                assert!((0..333).all(|i| values[i] == sum.value_filtered([x[i], y[i]], footprints[i])));
+            }
+        }
+    }
+}
