@@ -6,6 +6,32 @@
 //!
 //! [`compile`] resolves names, bakes transforms and builds the hierarchy; what it returns is immutable and valid, so
 //! that [`render`] cannot fail. This crate prints nothing and opens no file itself.
+//!
+//! ```
+//! use jaspe_render::{CompileOptions, Format, RenderOptions, compile, encode, render};
+//! use jaspe_scene::{MemoryLoader, parse};
+//!
+//! let text = r#"
+//!     image { resolution 32 24 }
+//!     camera { type pinhole eye 0 0 4 target 0 0 0 up 0 1 0 fov 40 aspect 1.333 }
+//!     light { type point color 1 1 1 power 400 p 3 4 5 }
+//!     shader { name veined type marble }
+//!     object { shader veined type sphere c 0 0 0 r 1 }
+//! "#;
+//! let loader = MemoryLoader::default();
+//! let (scene, diagnostics) = parse("marble.sc".as_ref(), text.as_bytes(), &loader);
+//! assert!(diagnostics.is_empty());
+//!
+//! let compilation = compile(&scene, &loader, &CompileOptions::default());
+//! let scene = compilation.scene.expect("the diagnostics hold no error");
+//! let (film, stats) = render(&scene, &RenderOptions::default(), &())?;
+//! assert_eq!((film.width, film.height, stats.samples), (32, 24, 32 * 24));
+//! assert!(film.pixels[12 * 32 + 16][0] > 0.1, "light falls on the middle of the ball");
+//!
+//! let png = encode(&film, Format::from_path("marble.png".as_ref())?)?;
+//! assert!(png.starts_with(b"\x89PNG"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod affine;
 mod camera;
