@@ -43,6 +43,7 @@
 //!   vectors of `f32`, and [`Dual`] numbers, which carry exact gradients.
 //! * [`Noise::fill`] and [`Sum::fill`] give the same bits as the `f32` evaluation, whatever the instruction set and the
 //!   length of the slices. A zero is always `+0`. (`JASPE_SIMD=scalar|sse|avx2|avx512` caps the instruction set.)
+//! * Improved noise equals Perlin's listing: exactly in double precision, to within 2e-6 in single precision.
 //! * No input panics. A coordinate that is infinite or NaN gives NaN. Far from the origin, where neighbouring numbers
 //!   are a whole unit apart, every point is a lattice point.
 //! * Nothing is allocated while evaluating.
