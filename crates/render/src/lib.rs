@@ -4,7 +4,7 @@
 //! Scene ──compile──▶ CompiledScene ──render──▶ Film ──develop──▶ Image ──encode──▶ bytes
 //! ```
 //!
-//! [`compile`] resolves names, bakes transforms and builds the hierarchy; what it returns is immutable and valid, so
+//! [`compile()`] resolves names, bakes transforms and builds the hierarchy; what it returns is immutable and valid, so
 //! that [`render`] cannot fail. This crate prints nothing and opens no file itself.
 //!
 //! ```

@@ -148,6 +148,7 @@ pub(crate) fn pow(base: f32, exponent: f32) -> f32 {
 }
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "our functions are held against the platform's")]
 mod tests {
     use super::*;
 
