@@ -39,44 +39,17 @@ pub fn bless(filter: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// How wide the gallery's pictures are, in pixels.
-const GALLERY_WIDTH: u32 = 400;
-
-/// Renders every scene of `scenes/` into `docs/gallery/`.
+/// Renders the scenes that lie in `scenes/` itself into `docs/gallery/`, each at its own size. JPEG, because the pictures
+/// are for looking at and the repository keeps every version of them.
 pub fn gallery() -> Result<(), String> {
     let jaspe = build()?;
     let (scenes, gallery) = (root().join("scenes"), root().join("docs/gallery"));
     fs::create_dir_all(&gallery).map_err(|error| error.to_string())?;
-    for case in files(&scenes, "sc")? {
-        let scene = scenes.join(&case);
-        let picture = gallery.join(case.file_name().unwrap_or_default()).with_extension("png");
-        let mut command = Command::new(&jaspe);
-        command.arg("render").arg(&scene).arg("-o").arg(&picture);
-        if let Some(resolution) = gallery_resolution(&scene)? {
-            command.args(["--resolution", &resolution]);
-        }
-        run(&mut command)?;
+    for case in files(&scenes, "sc")?.iter().filter(|case| case.components().count() == 1) {
+        let picture = gallery.join(case).with_extension("jpg");
+        run(Command::new(&jaspe).arg("render").arg(scenes.join(case)).arg("-o").arg(&picture))?;
     }
     Ok(())
-}
-
-/// The scene's own shape at the gallery's width. In the report's dialect another size shows another part of the scene,
-/// so those keep their own.
-fn gallery_resolution(scene: &Path) -> Result<Option<String>, String> {
-    let text = fs::read(scene).map_err(|error| format!("cannot read {}: {error}", scene.display()))?;
-    let text = String::from_utf8_lossy(&text);
-    let words: Vec<&str> = text.split_whitespace().collect();
-    if words.windows(2).any(|pair| pair == ["dialect", "report"]) {
-        return Ok(None);
-    }
-    let side = |word: &str| word.parse::<u32>().ok().filter(|side| *side > 0);
-    let size = words.windows(3).rev().find_map(|triple| match triple {
-        ["resolution", width, height] => side(width).zip(side(height)),
-        _ => None,
-    });
-    let (width, height) = size.unwrap_or((640, 480));
-    let height = (u64::from(height) * u64::from(GALLERY_WIDTH) / u64::from(width)).max(1);
-    Ok(Some(format!("{GALLERY_WIDTH}x{height}")))
 }
 
 /// Builds the program as users have it, and says where it is.
