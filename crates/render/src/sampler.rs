@@ -14,15 +14,10 @@ pub(crate) struct SampleKey {
 
 impl SampleKey {
     /// The key of sample `index` of a pixel.
+    #[inline(always)]
     pub fn new(x: u32, y: u32, index: u32, seed: u64) -> Self {
         let seed = hash(seed as u32 ^ hash((seed >> 32) as u32));
         SampleKey { pixel: hash(x ^ hash(y ^ seed)), index }
-    }
-
-    /// The key of another sample of the same pixel.
-    #[inline]
-    pub fn with_index(self, index: u32) -> Self {
-        SampleKey { index, ..self }
     }
 
     /// The pair of dimensions `dimension`, each in [0, 1).

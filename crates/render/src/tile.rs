@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use crate::compile::{CompiledScene, Meaning, Sampling};
 use crate::film::{Encoding, Film};
 use crate::options::{Cancelled, Observer, RenderOptions, Stats};
-use crate::wave::{CameraSample, Rules, SampleResult, Seen, Workspace};
+use crate::wave::{CameraSample, Rules, SampleResult, Seen, Target, Workspace};
 
 /// Pixels along the edge of a tile.
 const TILE: u32 = 32;
@@ -101,9 +101,8 @@ struct Tile {
 #[derive(Default)]
 struct Room {
     workspace: Workspace,
+    targets: Vec<Target>,
     samples: Vec<CameraSample>,
-    /// The pixel of each sample.
-    targets: Vec<u32>,
     results: Vec<SampleResult>,
 }
 
@@ -233,32 +232,29 @@ impl<'a, R: Rules> Job<'a, R> {
                 let seen = tile.pixels[pixel as usize].seen;
                 tile.pixels[pixel as usize] = Accumulator { seen, ..Accumulator::EMPTY };
             }
-            let mut next = pass.first;
-            while next < pass.end {
-                let end = pass.end.min(next + (WAVE - room.samples.len()) as u32);
-                self.scene.camera_samples(at, next..end, pass.end, self.options.seed, &mut room.samples);
-                room.targets.resize(room.samples.len(), pixel);
-                next = end;
-                if room.samples.len() == WAVE {
-                    self.wave(tile, room);
+            for index in pass.first..pass.end {
+                room.targets.push(Target { pixel: at, slot: pixel, index });
+                if room.targets.len() == WAVE {
+                    self.wave(tile, pass, room);
                     if self.observer.cancelled() {
                         return;
                     }
                 }
             }
         }
-        self.wave(tile, room);
+        self.wave(tile, pass, room);
     }
 
-    fn wave(&self, tile: &mut Tile, room: &mut Room) {
-        let Room { workspace, samples, targets, results } = room;
+    fn wave(&self, tile: &mut Tile, pass: Pass, room: &mut Room) {
+        let Room { workspace, targets, samples, results } = room;
+        samples.clear();
+        self.scene.camera_samples(targets, pass.end, self.options.seed, samples);
         workspace.trace(self.scene, self.rules, samples, results);
-        for ((result, sample), &pixel) in results.iter().zip(&*samples).zip(&*targets) {
-            tile.pixels[pixel as usize].add(result, sample.weight);
+        for ((target, sample), result) in targets.iter().zip(&*samples).zip(&*results) {
+            tile.pixels[target.slot as usize].add(result, sample.weight);
         }
         let done = self.done.fetch_add(samples.len() as u64, Ordering::Relaxed) + samples.len() as u64;
         self.observer.progress(done, self.total.load(Ordering::Relaxed));
-        samples.clear();
         targets.clear();
     }
 

@@ -108,6 +108,14 @@ impl Seen {
     pub const NOTHING: Seen = Seen { object: Id::NONE.object, normal: Vec3::ZERO };
 }
 
+/// Which sample of which pixel; `slot` is the pixel's place in its tile.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Target {
+    pub pixel: [u32; 2],
+    pub slot: u32,
+    pub index: u32,
+}
+
 /// A camera sample that is to be traced.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CameraSample {
@@ -158,6 +166,11 @@ impl<'a> Batch<'a> {
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&'a PathRay, &'a Hit)> + use<'a> {
         let (rays, hits) = (self.rays, self.hits);
         self.members.iter().map(move |&i| (&rays[i as usize], &hits[i as usize]))
+    }
+
+    /// The ray of a member.
+    pub fn ray(&self, member: usize) -> &'a Ray {
+        &self.rays[self.members[member] as usize].ray
     }
 
     pub fn geometry(&self) -> &'a Geometry {

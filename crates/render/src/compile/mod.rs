@@ -4,8 +4,6 @@
 mod materials;
 mod objects;
 
-use std::ops::Range;
-
 use glam::Vec3;
 use jaspe_scene::description::{Camera as CameraDescription, Filter, Lens, LightKind, View};
 use jaspe_scene::{Diagnostic, Diagnostics, Dialect, Loader, Scene};
@@ -16,10 +14,10 @@ use crate::geometry::Geometry;
 use crate::light::Light;
 use crate::material::Material;
 use crate::options::{CompileOptions, RenderOptions};
-use crate::report::{Report, ReportCamera, ReportLight};
+use crate::report::{Grid, Report, ReportCamera, ReportLight};
 use crate::sampler::SampleKey;
 use crate::sunflow::Sunflow;
-use crate::wave::CameraSample;
+use crate::wave::{CameraSample, Target};
 
 /// A scene ready to render: immutable and valid.
 #[derive(Debug)]
@@ -75,36 +73,30 @@ impl CompiledScene {
         }
     }
 
-    /// Appends samples of one pixel, which is to have `end` of them.
-    pub(crate) fn camera_samples(
-        &self,
-        [x, y]: [u32; 2],
-        indices: Range<u32>,
-        end: u32,
-        seed: u64,
-        samples: &mut Vec<CameraSample>,
-    ) {
-        let key = SampleKey::new(x, y, 0, seed);
+    /// Appends samples of pixels that are to have `end` of them each.
+    pub(crate) fn camera_samples(&self, targets: &[Target], end: u32, seed: u64, samples: &mut Vec<CameraSample>) {
         match &self.meaning {
-            &Meaning::Sunflow { ref camera, ref filter, jitter, .. } => samples.extend(indices.map(|index| {
-                let key = key.with_index(index);
-                // A single sample stands for the pixel's centre. Several lie alike in all pixels, so that edges come
-                // out smooth; with `jitter`, every pixel has its own.
-                let ([dx, dy], weight) = match (end, jitter) {
-                    (1, _) => ([0.0; 2], 1.0),
-                    (_, false) => filter.sample(SampleKey::shared(index, seed).pair(0)),
-                    (_, true) => filter.sample(key.pair(0)),
-                };
-                let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
-                let ray = camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, lens);
-                CameraSample { ray, key, weight }
-            })),
+            &Meaning::Sunflow { ref camera, ref filter, jitter, .. } => {
+                samples.extend(targets.iter().map(|&Target { pixel: [x, y], index, .. }| {
+                    let key = SampleKey::new(x, y, index, seed);
+                    // A single sample stands for the pixel's centre. Several lie alike in all pixels, so that edges
+                    // come out smooth; with `jitter`, every pixel has its own.
+                    let ([dx, dy], weight) = match (end, jitter) {
+                        (1, _) => ([0.0; 2], 1.0),
+                        (_, false) => filter.sample(SampleKey::shared(index, seed).pair(0)),
+                        (_, true) => filter.sample(key.pair(0)),
+                    };
+                    let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
+                    let ray = camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, lens);
+                    CameraSample { ray, key, weight }
+                }));
+            }
             Meaning::Report { rules } => {
                 let grid = match self.sampling {
-                    Sampling::Report { edge, repeats } => [edge, repeats],
-                    _ => [1, end],
+                    Sampling::Report { edge, repeats } => Grid { edge, repeats },
+                    _ => Grid { edge: 1, repeats: end },
                 };
-                rules.camera.samples([x, y], grid, indices, key, samples);
+                rules.camera.samples(grid, targets, seed, samples);
             }
         }
     }

@@ -7,7 +7,7 @@ mod bvh;
 mod kernel;
 mod packet;
 mod plan;
-mod simd;
+pub(crate) mod simd;
 mod surface;
 mod traverse;
 
@@ -174,13 +174,13 @@ impl Geometry {
 
     /// The first hit of every ray.
     pub fn closest<R: AsRef<Ray>>(&self, rays: &[R], hits: &mut Vec<Hit>, scratch: &mut Scratch) {
-        hits.clear();
+        hits.resize(rays.len(), Hit::NONE);
         simd::run(Closest { geometry: self, rays, hits, scratch });
     }
 
     /// For every shadow ray, whether something lies before its end.
     pub fn occluded<R: AsRef<Ray>>(&self, rays: &[R], blocked: &mut Vec<bool>, scratch: &mut Scratch) {
-        blocked.clear();
+        blocked.resize(rays.len(), false);
         simd::run(Occluded { geometry: self, rays, blocked, scratch });
     }
 
@@ -201,7 +201,7 @@ impl Geometry {
 struct Closest<'a, R> {
     geometry: &'a Geometry,
     rays: &'a [R],
-    hits: &'a mut Vec<Hit>,
+    hits: &'a mut [Hit],
     scratch: &'a mut Scratch,
 }
 
@@ -211,17 +211,16 @@ impl<R: AsRef<Ray>> simd::Kernel for Closest<'_, R> {
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Closest { geometry, rays, hits, scratch } = self;
-        let (packets, rest) = rays.as_chunks();
-        for rays in packets {
+        let ((packets, rest), (packet_hits, rest_hits)) = (rays.as_chunks(), hits.as_chunks_mut());
+        for (rays, hits) in packets.iter().zip(packet_hits) {
             let mut packet = Packet::<_, S, false>::new(rays);
             packet.planes(&geometry.planes);
             packet.trace(&geometry.tree, scratch);
-            hits.extend(packet.hits());
+            *hits = packet.hits();
         }
-        for ray in rest {
-            let mut hit = Hit { t: ray.as_ref().t_max, ..Hit::NONE };
-            geometry.trace::<S, false>(ray.as_ref(), &mut hit, scratch);
-            hits.push(hit);
+        for (ray, hit) in rest.iter().zip(rest_hits) {
+            *hit = Hit { t: ray.as_ref().t_max, ..Hit::NONE };
+            geometry.trace::<S, false>(ray.as_ref(), hit, scratch);
         }
     }
 }
@@ -230,7 +229,7 @@ impl<R: AsRef<Ray>> simd::Kernel for Closest<'_, R> {
 struct Occluded<'a, R> {
     geometry: &'a Geometry,
     rays: &'a [R],
-    blocked: &'a mut Vec<bool>,
+    blocked: &'a mut [bool],
     scratch: &'a mut Scratch,
 }
 
@@ -240,17 +239,17 @@ impl<R: AsRef<Ray>> simd::Kernel for Occluded<'_, R> {
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Occluded { geometry, rays, blocked, scratch } = self;
-        let (packets, rest) = rays.as_chunks();
-        for rays in packets {
+        let ((packets, rest), (packet_blocked, rest_blocked)) = (rays.as_chunks(), blocked.as_chunks_mut());
+        for (rays, blocked) in packets.iter().zip(packet_blocked) {
             let mut packet = Packet::<_, S, true>::new(rays);
             packet.planes(&geometry.planes);
             packet.trace(&geometry.tree, scratch);
-            blocked.extend(packet.blocked());
+            *blocked = packet.blocked();
         }
-        for ray in rest {
+        for (ray, blocked) in rest.iter().zip(rest_blocked) {
             let mut hit = Hit { t: ray.as_ref().t_max, ..Hit::NONE };
             geometry.trace::<S, true>(ray.as_ref(), &mut hit, scratch);
-            blocked.push(hit.id != Id::NONE);
+            *blocked = hit.id != Id::NONE;
         }
     }
 }

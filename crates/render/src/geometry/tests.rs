@@ -131,7 +131,7 @@ fn check(name: &str, geometry: &Geometry, rays: &[PlainRay]) {
     let (mut hits, mut blocked) = (Vec::new(), Vec::new());
     geometry.closest(rays, &mut hits, &mut scratch);
     geometry.occluded(rays, &mut blocked, &mut scratch);
-    let (mut plain_hits, mut plain_blocked) = (Vec::new(), Vec::new());
+    let (mut plain_hits, mut plain_blocked) = (vec![Hit::NONE; rays.len()], vec![false; rays.len()]);
     Closest { geometry, rays, hits: &mut plain_hits, scratch: &mut scratch }.run::<Portable>();
     Occluded { geometry, rays, blocked: &mut plain_blocked, scratch: &mut scratch }.run::<Portable>();
     assert_eq!(blocked, plain_blocked, "{name}: shadows of AVX2 and arrays");
@@ -322,8 +322,8 @@ fn bumpy_ball(random: &mut Random, rings: u32) -> MeshShape {
     for ring in 1..rings {
         for sector in 0..sectors {
             let (polar, around) = (f64::from(ring) / f64::from(rings), f64::from(sector) / f64::from(sectors));
-            let (sin, cos) = (polar * std::f64::consts::PI).sin_cos();
-            let (s, c) = (around * std::f64::consts::TAU).sin_cos();
+            let (sin, cos) = crate::math::sin_cos_degrees(polar * 180.0);
+            let (s, c) = crate::math::sin_cos_degrees(around * 360.0);
             points.push(DVec3::new(sin * c, cos, sin * s).as_vec3() * (0.7 + 0.3 * random.next()));
         }
     }
