@@ -45,7 +45,7 @@ pub fn run_all() -> Result<(), String> {
         }
     }
     println!("== tests");
-    if run(&mut cargo(&["test", "--workspace", "--release"])).is_err() {
+    if run(&mut cargo(&["test", "--workspace", "--profile", "checked"])).is_err() {
         failed.push("tests");
     }
     if failed.is_empty() { Ok(()) } else { Err(format!("failed: {}", failed.join(", "))) }

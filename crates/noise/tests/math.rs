@@ -1,5 +1,7 @@
 //! The error bounds that `math` documents.
 
+#![allow(clippy::disallowed_methods, reason = "our functions are held against the platform's")]
+
 use jaspe_noise::math;
 
 /// Evenly spaced numbers from `low` to `high`.

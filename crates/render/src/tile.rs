@@ -92,9 +92,26 @@ impl Rect {
 /// The part of the picture that one thread works at.
 struct Tile {
     rect: Rect,
+    /// Made when the first sample falls, by the thread that traces it; then one for each pixel.
     pixels: Vec<Accumulator>,
     /// Pixels that the current pass adds samples to, as indices into `pixels`.
-    active: Vec<u32>,
+    active: Active,
+}
+
+/// A choice of a tile's pixels.
+enum Active {
+    All,
+    Some(Vec<u32>),
+}
+
+impl Tile {
+    /// How many pixels the current pass adds samples to.
+    fn active_count(&self) -> u64 {
+        match &self.active {
+            Active::All => self.rect.pixels(),
+            Active::Some(pixels) => pixels.len() as u64,
+        }
+    }
 }
 
 /// One thread's room for the waves of its tiles.
@@ -191,29 +208,36 @@ impl<'a, R: Rules> Job<'a, R> {
         Ok((self.film(&tiles), stats))
     }
 
-    /// The tiles of the region, every pixel active.
+    /// The tiles of the region, row by row, every pixel active.
     fn tiles(&self) -> Vec<Tile> {
         let [x0, y0, x1, y1] = self.region.0;
         let mut tiles = Vec::new();
         for y in (y0..y1).step_by(TILE as usize) {
             for x in (x0..x1).step_by(TILE as usize) {
                 let rect = Rect([x, y, (x + TILE).min(x1), (y + TILE).min(y1)]);
-                let count = rect.pixels() as usize;
-                tiles.push(Tile { rect, pixels: vec![Accumulator::EMPTY; count], active: (0..count as u32).collect() });
+                tiles.push(Tile { rect, pixels: Vec::new(), active: Active::All });
             }
         }
         tiles
     }
 
+    /// A pixel of the region.
+    fn pixel<'t>(&self, tiles: &'t [Tile], x: u32, y: u32) -> &'t Accumulator {
+        let column = (x - self.region.0[0]) / TILE;
+        let row = (y - self.region.0[1]) / TILE;
+        let tile = &tiles[(row * self.region.width().div_ceil(TILE) + column) as usize];
+        &tile.pixels[tile.rect.index(x, y)]
+    }
+
     fn pass(&self, tiles: &mut [Tile], pass: Pass, stats: &mut Stats) -> Result<(), Cancelled> {
         let samples = u64::from(pass.end - pass.first);
-        let work: u64 = tiles.iter().map(|tile| tile.active.len() as u64 * samples).sum();
+        let work: u64 = tiles.iter().map(|tile| tile.active_count() * samples).sum();
         self.total.fetch_add(work, Ordering::Relaxed);
         let gathered = tiles
             .par_iter_mut()
             .map_init(Room::default, |room, tile| {
                 room.workspace.queues.stats = Stats::default();
-                if !tile.active.is_empty() && !self.observer.cancelled() {
+                if tile.active_count() > 0 && !self.observer.cancelled() {
                     self.tile(tile, pass, room);
                 }
                 room.workspace.queues.stats
@@ -225,7 +249,11 @@ impl<'a, R: Rules> Job<'a, R> {
 
     /// Adds the samples of a pass to the active pixels of a tile, a wave at a time.
     fn tile(&self, tile: &mut Tile, pass: Pass, room: &mut Room) {
-        let active = std::mem::take(&mut tile.active);
+        tile.pixels.resize(tile.rect.pixels() as usize, Accumulator::EMPTY);
+        let active = match std::mem::replace(&mut tile.active, Active::Some(Vec::new())) {
+            Active::All => (0..tile.pixels.len() as u32).collect(),
+            Active::Some(pixels) => pixels,
+        };
         for &pixel in &active {
             let at = [tile.rect.0[0] + pixel % tile.rect.width(), tile.rect.0[1] + pixel / tile.rect.width()];
             if pass.restart {
@@ -261,51 +289,28 @@ impl<'a, R: Rules> Job<'a, R> {
     /// Chooses the pixels of the next pass: on the first refinement those that differ from a neighbour, and always
     /// those whose own samples differ.
     fn refine(&self, tiles: &mut [Tile], first: bool, threshold: f32) {
-        let mut marked = vec![false; self.region.pixels() as usize];
-        if first {
-            let pixels = self.gather(tiles);
-            let [x0, y0, x1, y1] = self.region.0;
-            for y in y0..y1 {
-                for x in x0..x1 {
-                    let here = self.region.index(x, y);
-                    let others = [(x + 1, y), (x, y + 1), (x + 1, y + 1), (x.wrapping_sub(1), y + 1)];
-                    for (ox, oy) in others.into_iter().filter(|&(ox, oy)| ox >= x0 && ox < x1 && oy < y1) {
-                        let there = self.region.index(ox, oy);
-                        if differ(&pixels[here], &pixels[there], threshold) {
-                            marked[here] = true;
-                            marked[there] = true;
-                        }
-                    }
-                }
-            }
-        }
-        for tile in tiles {
-            let Rect([x0, y0, x1, y1]) = tile.rect;
-            tile.active.clear();
-            for (i, (y, x)) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y, x))).enumerate() {
-                let [cx0, cy0, cx1, cy1] = self.crop.0;
-                let wanted = (cx0..cx1).contains(&x) && (cy0..cy1).contains(&y);
+        let choose = |tile: &Tile| {
+            let [x0, y0, x1, y1] = tile.rect.0;
+            let [cx0, cy0, cx1, cy1] = self.crop.0;
+            let inner = (y0.max(cy0)..y1.min(cy1)).flat_map(|y| (x0.max(cx0)..x1.min(cx1)).map(move |x| (x, y)));
+            let chosen = inner.filter(|&(x, y)| {
+                let pixel = &tile.pixels[tile.rect.index(x, y)];
                 // The spread of a pair that differs by the threshold t, |a − b| / (a + b) = t, is t.
-                let uneven = tile.pixels[i].count > 1 && tile.pixels[i].spread() > threshold;
-                if wanted && (marked[self.region.index(x, y)] || uneven) {
-                    tile.active.push(i as u32);
-                }
-            }
-        }
+                let uneven = pixel.count > 1 && pixel.spread() > threshold;
+                uneven || first && self.neighbours(x, y).any(|(x, y)| differ(pixel, self.pixel(tiles, x, y), threshold))
+            });
+            Active::Some(chosen.map(|(x, y)| tile.rect.index(x, y) as u32).collect())
+        };
+        let active: Vec<Active> = tiles.par_iter().map(choose).collect();
+        tiles.iter_mut().zip(active).for_each(|(tile, active)| tile.active = active);
     }
 
-    /// All accumulators of the region, row by row.
-    fn gather(&self, tiles: &[Tile]) -> Vec<Accumulator> {
-        let mut all = vec![Accumulator::EMPTY; self.region.pixels() as usize];
-        for tile in tiles {
-            let Rect([x0, y0, x1, y1]) = tile.rect;
-            let width = tile.rect.width() as usize;
-            for (row, y) in (y0..y1).enumerate() {
-                let from = &tile.pixels[row * width..][..width];
-                all[self.region.index(x0, y)..][..(x1 - x0) as usize].copy_from_slice(from);
-            }
-        }
-        all
+    /// The up to eight pixels around one, within the region.
+    fn neighbours(&self, x: u32, y: u32) -> impl Iterator<Item = (u32, u32)> {
+        let [x0, y0, x1, y1] = self.region.0;
+        let columns = x.saturating_sub(1).max(x0)..(x + 2).min(x1);
+        let rows = y.saturating_sub(1).max(y0)..(y + 2).min(y1);
+        rows.flat_map(move |row| columns.clone().map(move |column| (column, row))).filter(move |&at| at != (x, y))
     }
 
     fn film(&self, tiles: &[Tile]) -> Film {
@@ -313,13 +318,12 @@ impl<'a, R: Rules> Job<'a, R> {
             Meaning::Sunflow { .. } => Encoding::Linear,
             Meaning::Report { .. } => Encoding::Display,
         };
-        let pixels = self.gather(tiles);
         let mut film = Film::new(self.crop.width(), self.crop.height(), encoding);
-        let [x0, y0, x1, y1] = self.crop.0;
-        let positions = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
-        for (pixel, (x, y)) in film.pixels.iter_mut().zip(positions) {
-            *pixel = pixels[self.region.index(x, y)].mean();
-        }
+        let [x0, y0, ..] = self.crop.0;
+        film.pixels.par_chunks_mut(self.crop.width() as usize).enumerate().for_each(|(row, pixels)| {
+            let y = y0 + row as u32;
+            pixels.iter_mut().zip(x0..).for_each(|(pixel, x)| *pixel = self.pixel(tiles, x, y).mean());
+        });
         film
     }
 }

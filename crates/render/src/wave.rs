@@ -119,8 +119,9 @@ pub(crate) struct Target {
 /// A camera sample that is to be traced.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CameraSample {
-    /// The ray, unless the lens sees nothing there.
-    pub ray: Option<(Vec3, Vec3)>,
+    pub origin: Vec3,
+    /// Of unit length; zero where the lens sees nothing.
+    pub direction: Vec3,
     pub key: SampleKey,
     /// What it counts in its pixel.
     pub weight: f32,
@@ -237,7 +238,9 @@ impl Workspace {
                     if first {
                         self.coverage[ray.node as usize] = 1.0;
                     }
-                } else if let Some(light) = rules.miss(scene, ray) {
+                } else if ray.ray.t_max > 0.0
+                    && let Some(light) = rules.miss(scene, ray)
+                {
                     self.queues.nodes[ray.node as usize].direct += ray.weight * light;
                     if first {
                         self.coverage[ray.node as usize] = 1.0;
@@ -263,11 +266,13 @@ impl Workspace {
         queues.seen.clear();
         queues.seen.resize(samples.len(), Seen::NOTHING);
         queues.stats.samples += samples.len() as u64;
-        queues.rays.extend(samples.iter().enumerate().filter_map(|(node, sample)| {
-            let (origin, direction) = sample.ray?;
-            let ray = Ray { origin, direction, t_min: rules.t_min(), t_max: f32::INFINITY, skip: Id::NONE };
-            let (kind, depth) = (RayKind::Camera, Depth::default());
-            Some(PathRay { ray, weight: Vec3::ONE, node: node as u32, key: sample.key, kind, depth })
+        let t_min = rules.t_min();
+        queues.rays.extend(samples.iter().zip(0..).map(|(sample, node)| {
+            let CameraSample { origin, direction, key, .. } = *sample;
+            // No direction: a ray that ends before it begins.
+            let t_max = if direction == Vec3::ZERO { -1.0 } else { f32::INFINITY };
+            let ray = Ray { origin, direction, t_min, t_max, skip: Id::NONE };
+            PathRay { ray, weight: Vec3::ONE, node, key, kind: RayKind::Camera, depth: Depth::default() }
         }));
     }
 

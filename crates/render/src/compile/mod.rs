@@ -88,7 +88,8 @@ impl CompiledScene {
                     };
                     let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
                     let ray = camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, lens);
-                    CameraSample { ray, key, weight }
+                    let (origin, direction) = ray.unwrap_or_default();
+                    CameraSample { origin, direction, key, weight }
                 }));
             }
             Meaning::Report { rules } => {
@@ -259,7 +260,9 @@ fn note_darkness(scene: &Scene, compiled: &CompiledScene, diagnostics: &mut Diag
         .map(|i| {
             let at = |k: usize, cell: u32| (cell as f32 + 0.5) / PROBE[k] as f32 * compiled.size[k] as f32;
             let ray = camera.ray(at(0, i % PROBE[0]), at(1, i / PROBE[0]), [0.5; 2]);
-            CameraSample { ray, key: SampleKey::new(i, 0, 0, RenderOptions::default().seed), weight: 1.0 }
+            let (origin, direction) = ray.unwrap_or_default();
+            let key = SampleKey::new(i, 0, 0, RenderOptions::default().seed);
+            CameraSample { origin, direction, key, weight: 1.0 }
         })
         .collect();
     let mut results = Vec::new();

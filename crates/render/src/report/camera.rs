@@ -102,7 +102,8 @@ impl simd::Kernel for Aim<'_> {
                 (directions[0][i], directions[1][i], directions[2][i]) = (direction.x, direction.y, direction.z);
             }
             samples.extend((0..targets.len()).map(|i| CameraSample {
-                ray: Some((camera.eye, Vec3::new(directions[0][i], directions[1][i], directions[2][i]))),
+                origin: camera.eye,
+                direction: Vec3::new(directions[0][i], directions[1][i], directions[2][i]),
                 key: SampleKey { pixel: keys[i], index: indices[i] },
                 weight: 1.0,
             }));
