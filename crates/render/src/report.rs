@@ -8,6 +8,7 @@ use glam::{Vec2, Vec3};
 use jaspe_texture::Space;
 
 use crate::compile::CompiledScene;
+use crate::geometry::simd::{self, Simd};
 use crate::geometry::{Geometry, Hit, Id, PlaneShape, Ray, Shape};
 use crate::material::{Albedo, Material, TextureBatch};
 use crate::math;
@@ -49,18 +50,7 @@ impl Rules for Report {
         self.albedos(batch, material, textures, colors);
         queues.stats.texture_points += textures.len() as u64;
         textures.clear();
-        let response = Share::of(material);
-        let mut points = Points::NONE;
-        for (chunk, colors) in batch.chunks(CHUNK).zip(colors.chunks(CHUNK)) {
-            self.locate(&chunk, &mut points);
-            for &(_, node) in &points.ids[..colors.len()] {
-                queues.nodes[node as usize].gain = response.gain;
-            }
-            self.direct(&chunk, material, &points, colors, queues);
-            if response.reflected > 0.0 || response.refracted > 0.0 {
-                spawn_all(&chunk, &response, &points, queues);
-            }
-        }
+        simd::run(Light { report: self, batch, material, colors, queues });
     }
 
     fn miss(&self, _: &CompiledScene, _: &PathRay) -> Option<Vec3> {
@@ -74,6 +64,36 @@ impl Rules for Report {
 
     fn t_min(&self) -> f32 {
         T_MIN
+    }
+}
+
+/// Light and secondary rays of a batch, as a kernel.
+struct Light<'a, 'b> {
+    report: &'a Report,
+    batch: &'a Batch<'b>,
+    material: &'a Material,
+    colors: &'a [Vec3],
+    queues: &'a mut Queues,
+}
+
+impl simd::Kernel for Light<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Light { report, batch, material, colors, queues } = self;
+        let share = Share::of(material);
+        let mut points = Points::NONE;
+        for (chunk, colors) in batch.chunks(CHUNK).zip(colors.chunks(CHUNK)) {
+            report.locate(&chunk, &mut points);
+            for &(_, node) in &points.ids[..colors.len()] {
+                queues.nodes[node as usize].gain = share.gain;
+            }
+            report.direct(&chunk, material, &points, colors, queues);
+            if share.reflected > 0.0 || share.refracted > 0.0 {
+                spawn_all(&chunk, &share, &points, queues);
+            }
+        }
     }
 }
 

@@ -35,10 +35,13 @@ struct Sight {
     distance: Row,
     /// Between the light and the normal.
     cosine: Row,
+    /// The part of the light that reaches a matte surface: the cosine and the linear decay.
+    share: Row,
 }
 
 impl Report {
     /// Positions and normals of a chunk.
+    #[inline(always)]
     pub(super) fn locate(&self, chunk: &Batch<'_>, points: &mut Points) {
         let geometry = chunk.geometry();
         let mut curved = [false; CHUNK];
@@ -67,6 +70,7 @@ impl Report {
     }
 
     /// Light from the lights; nothing in between may be hit, glass included.
+    #[inline(always)]
     pub(super) fn direct(
         &self,
         chunk: &Batch<'_>,
@@ -86,28 +90,36 @@ impl Report {
         }
         for light in &self.lights {
             let sight = Sight::of(light, points);
-            for (i, (&color, &(skip, node))) in colors.iter().zip(&points.ids).enumerate() {
-                let (direction, distance, cosine) = (at(&sight.direction, i), sight.distance[i], sight.cosine[i]);
+            for (i, &color) in colors.iter().enumerate() {
                 let contribution = match phong {
-                    Some((specular, power)) => {
-                        let normal = at(&points.normal, i);
-                        let mirrored = (normal * (2.0 * cosine) - direction).normalize_or(normal);
-                        let highlight = signed_power(mirrored.dot(chunk.ray(i).direction), power);
-                        0.5 * color * cosine + specular * light.color * highlight
-                    }
-                    None if cosine <= 0.0 || distance > light.range => continue,
-                    None => cosine * light.color * color * (1.0 - distance / light.range),
+                    Some(lobe) => highlighted(light, lobe, &sight, points, (i, color, chunk.ray(i).direction)),
+                    None => light.color * color * sight.share[i],
                 };
-                // Nothing but numbers in either.
-                if contribution.dot(direction).is_finite() {
+                // Nothing for no light, and for points in the light itself.
+                if contribution != Vec3::ZERO && contribution.is_finite() {
+                    let (skip, node) = points.ids[i];
                     // A little longer, so that a surface through the light itself is in the way everywhere.
-                    let t_max = distance * 1.000_01;
-                    let ray = Ray { origin: at(&points.position, i), direction, t_min: T_MIN, t_max, skip };
+                    let t_max = sight.distance[i] * 1.000_01;
+                    let (origin, direction) = (at(&points.position, i), at(&sight.direction, i));
+                    let ray = Ray { origin, direction, t_min: T_MIN, t_max, skip };
                     queues.shadows.push(ShadowRay { ray, contribution, node });
                 }
             }
         }
     }
+}
+
+/// What a light gives to point `i` of a glossy surface, seen along `along`. (The light's range has no part in it.)
+fn highlighted(
+    light: &ReportLight,
+    (specular, power): (Vec3, f32),
+    sight: &Sight,
+    points: &Points,
+    (i, color, along): (usize, Vec3, Vec3),
+) -> Vec3 {
+    let (normal, cosine) = (at(&points.normal, i), sight.cosine[i]);
+    let mirrored = (normal * (2.0 * cosine) - at(&sight.direction, i)).normalize_or(normal);
+    0.5 * color * cosine + specular * light.color * signed_power(mirrored.dot(along), power)
 }
 
 /// What a material makes of the light from around.
@@ -133,8 +145,10 @@ impl Share {
 }
 
 impl Sight {
+    #[inline(always)]
     fn of(light: &ReportLight, points: &Points) -> Sight {
-        let mut sight = Sight { direction: [[0.0; CHUNK]; 3], distance: [0.0; CHUNK], cosine: [0.0; CHUNK] };
+        let row = [0.0; CHUNK];
+        let mut sight = Sight { direction: [row; 3], distance: row, cosine: row, share: row };
         let ([px, py, pz], [nx, ny, nz]) = (&points.position, &points.normal);
         let [dx, dy, dz] = &mut sight.direction;
         for i in 0..CHUNK {
@@ -142,14 +156,17 @@ impl Sight {
             let distance = (x * x + y * y + z * z).sqrt();
             (dx[i], dy[i], dz[i]) = (x / distance, y / distance, z / distance);
             sight.distance[i] = distance;
-            sight.cosine[i] = nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i];
+            let cosine = nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i];
+            sight.cosine[i] = cosine;
+            let reached = cosine > 0.0 && distance <= light.range;
+            sight.share[i] = if reached { cosine * (1.0 - distance / light.range) } else { 0.0 };
         }
         sight
     }
 }
 
 /// Point `i` of three rows.
-#[inline]
+#[inline(always)]
 fn at(rows: &[Row; 3], i: usize) -> Vec3 {
     Vec3::new(rows[0][i], rows[1][i], rows[2][i])
 }
@@ -166,6 +183,7 @@ fn facing_normal(geometry: &Geometry, ray: &Ray, hit: &Hit) -> Vec3 {
 }
 
 /// Queues the secondary rays of a chunk.
+#[inline(always)]
 pub(super) fn spawn_all(chunk: &Batch<'_>, share: &Share, points: &Points, queues: &mut Queues) {
     for (i, (path, hit)) in chunk.iter().enumerate() {
         if path.depth.total() >= MAX_BOUNCES {
@@ -192,6 +210,7 @@ pub(super) fn spawn_all(chunk: &Batch<'_>, share: &Share, points: &Points, queue
 }
 
 /// Queues a secondary ray with a node of its own.
+#[inline(always)]
 fn spawn(path: &PathRay, ray: Ray, weight: f32, kind: RayKind, queues: &mut Queues) {
     let node = queues.nodes.len() as u32;
     queues.nodes.push(Node { direct: Vec3::ZERO, indirect: Vec3::ZERO, parent: path.node, weight, gain: 0.0 });
