@@ -7,7 +7,6 @@ mod shade;
 use glam::{Vec2, Vec3};
 use jaspe_texture::Space;
 
-use crate::compile::CompiledScene;
 use crate::geometry::simd::{self, Simd};
 use crate::geometry::{Geometry, Hit, Id, PlaneShape, Ray, Shape};
 use crate::material::{Albedo, Material, TextureBatch};
@@ -46,14 +45,14 @@ pub(crate) struct Report {
 
 impl Rules for Report {
     fn shade(&self, batch: &Batch<'_>, textures: &mut TextureBatch, colors: &mut Vec<Vec3>, queues: &mut Queues) {
-        let material = &batch.scene.materials[batch.material as usize];
+        let material = batch.material;
         self.albedos(batch, material, textures, colors);
         queues.stats.texture_points += textures.len() as u64;
         textures.clear();
         simd::run(Light { report: self, batch, material, colors, queues });
     }
 
-    fn miss(&self, _: &CompiledScene, _: &PathRay) -> Option<Vec3> {
+    fn miss(&self, _: &PathRay) -> Option<Vec3> {
         Some(Vec3::ZERO)
     }
 
@@ -100,7 +99,7 @@ impl simd::Kernel for Light<'_, '_> {
 impl Report {
     /// Colours of a batch, one per member.
     fn albedos(&self, batch: &Batch<'_>, material: &Material, textures: &mut TextureBatch, colors: &mut Vec<Vec3>) {
-        let geometry = batch.geometry();
+        let geometry = batch.geometry;
         let position = |path: &PathRay, hit: &Hit| path.ray.origin + path.ray.direction * hit.t;
         match &material.albedo {
             Albedo::Color(color) => colors.resize(batch.members.len(), *color),

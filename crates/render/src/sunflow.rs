@@ -3,7 +3,6 @@
 use glam::{Vec2, Vec3};
 use jaspe_texture::Space;
 
-use crate::compile::CompiledScene;
 use crate::geometry::{Hit, Id, Ray, Surface};
 use crate::light::{Arrival, Light};
 use crate::material::{Albedo, Material, Response, TextureBatch, schlick, transmittance};
@@ -57,7 +56,7 @@ impl Point<'_> {
 
 impl Rules for Sunflow {
     fn shade(&self, batch: &Batch<'_>, textures: &mut TextureBatch, colors: &mut Vec<Vec3>, queues: &mut Queues) {
-        let material = &batch.scene.materials[batch.material as usize];
+        let material = batch.material;
         albedos(batch, material, textures, colors);
         queues.stats.texture_points += textures.len() as u64;
         textures.clear();
@@ -71,7 +70,7 @@ impl Rules for Sunflow {
         }
     }
 
-    fn miss(&self, _: &CompiledScene, ray: &PathRay) -> Option<Vec3> {
+    fn miss(&self, ray: &PathRay) -> Option<Vec3> {
         // Sunflow: backgrounds are seen by camera rays only (R3).
         if ray.depth.total() == 0 { self.background } else { None }
     }
@@ -88,7 +87,7 @@ impl Rules for Sunflow {
 
 /// Colours of a batch, one per member.
 fn albedos(batch: &Batch<'_>, material: &Material, textures: &mut TextureBatch, colors: &mut Vec<Vec3>) {
-    let geometry = batch.geometry();
+    let geometry = batch.geometry;
     match &material.albedo {
         Albedo::Color(color) => colors.resize(batch.members.len(), *color),
         Albedo::Picture(picture) => colors.extend(batch.iter().map(|(path, hit)| {
@@ -115,14 +114,14 @@ fn albedos(batch: &Batch<'_>, material: &Material, textures: &mut TextureBatch, 
 
 impl Sunflow {
     fn point<'a>(&self, batch: &Batch<'_>, path: &'a PathRay, hit: &'a Hit, color: Vec3) -> Point<'a> {
-        let mut surface = batch.geometry().surface(&path.ray, hit);
+        let mut surface = batch.geometry.surface(&path.ray, hit);
         let inside = path.ray.direction.dot(surface.geometric) >= 0.0;
         if inside {
             surface.geometric = -surface.geometric;
             surface.normal = -surface.normal;
         }
         let cosine = (-path.ray.direction.dot(surface.normal)).max(0.0);
-        let skip = if batch.geometry().is_flat(hit.id.object) { hit.id } else { Id::NONE };
+        let skip = if batch.geometry.is_flat(hit.id.object) { hit.id } else { Id::NONE };
         Point { path, hit, surface, inside, cosine, color, skip }
     }
 
@@ -272,7 +271,7 @@ impl Sunflow {
         match look {
             Look::Normals => self.emit(point, (normal + Vec3::ONE) * 0.5, queues),
             Look::Uvs => {
-                let uv = batch.geometry().uv(point.hit, point.surface.point);
+                let uv = batch.geometry.uv(point.hit, point.surface.point);
                 self.emit(point, Vec3::new(uv.x - uv.x.floor(), uv.y - uv.y.floor(), 0.0), queues);
             }
             Look::Ids => {

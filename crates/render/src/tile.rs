@@ -277,7 +277,7 @@ impl<'a, R: Rules> Job<'a, R> {
         let Room { workspace, targets, samples, results } = room;
         samples.clear();
         self.scene.camera_samples(targets, pass.end, self.options.seed, samples);
-        workspace.trace(self.scene, self.rules, samples, results);
+        workspace.trace(&self.scene.world, self.rules, samples, results);
         for ((target, sample), result) in targets.iter().zip(&*samples).zip(&*results) {
             tile.pixels[target.slot as usize].add(result, sample.weight);
         }

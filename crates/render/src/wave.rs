@@ -7,9 +7,8 @@
 
 use glam::Vec3;
 
-use crate::compile::CompiledScene;
 use crate::geometry::{Geometry, Hit, Id, Ray, Scratch};
-use crate::material::TextureBatch;
+use crate::material::{Material, TextureBatch};
 use crate::options::Stats;
 use crate::sampler::SampleKey;
 
@@ -146,10 +145,18 @@ pub(crate) struct Queues {
     pub stats: Stats,
 }
 
+/// What rays meet.
+#[derive(Debug)]
+pub(crate) struct World {
+    pub geometry: Geometry,
+    /// By the indices that the geometry's objects carry.
+    pub materials: Vec<Material>,
+}
+
 /// The hits of one wave that share a material.
 pub(crate) struct Batch<'a> {
-    pub scene: &'a CompiledScene,
-    pub material: u32,
+    pub geometry: &'a Geometry,
+    pub material: &'a Material,
     /// Positions in `rays` and `hits`.
     pub members: &'a [u32],
     pub rays: &'a [PathRay],
@@ -159,8 +166,8 @@ pub(crate) struct Batch<'a> {
 impl<'a> Batch<'a> {
     /// The batch in pieces of up to `size` members.
     pub fn chunks(&self, size: usize) -> impl Iterator<Item = Batch<'a>> + use<'a> {
-        let Batch { scene, material, members, rays, hits } = *self;
-        members.chunks(size).map(move |members| Batch { scene, material, members, rays, hits })
+        let Batch { geometry, material, members, rays, hits } = *self;
+        members.chunks(size).map(move |members| Batch { geometry, material, members, rays, hits })
     }
 
     /// The members with their rays and hits.
@@ -173,10 +180,6 @@ impl<'a> Batch<'a> {
     pub fn ray(&self, member: usize) -> &'a Ray {
         &self.rays[self.members[member] as usize].ray
     }
-
-    pub fn geometry(&self) -> &'a Geometry {
-        &self.scene.geometry
-    }
 }
 
 /// What a dialect does with hits, misses and gathered light.
@@ -185,7 +188,7 @@ pub(crate) trait Rules: Sync {
     fn shade(&self, batch: &Batch<'_>, textures: &mut TextureBatch, colors: &mut Vec<Vec3>, queues: &mut Queues);
 
     /// Light along a ray that met nothing, and whether the camera takes it for a surface.
-    fn miss(&self, scene: &CompiledScene, ray: &PathRay) -> Option<Vec3>;
+    fn miss(&self, ray: &PathRay) -> Option<Vec3>;
 
     /// The light of a node whose children are complete.
     fn finish(&self, node: &Node) -> Vec3;
@@ -220,7 +223,7 @@ impl Workspace {
     /// Traces camera samples to their end; `results` gets one entry each, in order.
     pub fn trace<R: Rules>(
         &mut self,
-        scene: &CompiledScene,
+        world: &World,
         rules: &R,
         samples: &[CameraSample],
         results: &mut Vec<SampleResult>,
@@ -231,15 +234,15 @@ impl Workspace {
             std::mem::swap(&mut self.rays, &mut self.queues.rays);
             self.queues.rays.clear();
             self.count_rays();
-            scene.geometry.closest(&self.rays, &mut self.hits, &mut self.scratch);
-            self.sort_by_material(scene);
+            world.geometry.closest(&self.rays, &mut self.hits, &mut self.scratch);
+            self.sort_by_material(world);
             for (i, ray) in self.rays.iter().enumerate() {
                 if self.materials[i] != MISS {
                     if first {
                         self.coverage[ray.node as usize] = 1.0;
                     }
                 } else if ray.ray.t_max > 0.0
-                    && let Some(light) = rules.miss(scene, ray)
+                    && let Some(light) = rules.miss(ray)
                 {
                     self.queues.nodes[ray.node as usize].direct += ray.weight * light;
                     if first {
@@ -247,8 +250,8 @@ impl Workspace {
                     }
                 }
             }
-            self.shade(scene, rules);
-            self.light(scene);
+            self.shade(world, rules);
+            self.light(world);
             first = false;
         }
         self.resolve(rules, results);
@@ -288,13 +291,13 @@ impl Workspace {
     }
 
     /// Counting sort of the hits by material; misses are left out.
-    fn sort_by_material(&mut self, scene: &CompiledScene) {
-        let count = scene.materials.len();
+    fn sort_by_material(&mut self, world: &World) {
+        let count = world.materials.len();
         self.starts.clear();
         self.starts.resize(count + 1, 0);
         self.materials.clear();
         for hit in &self.hits {
-            let material = if hit.id == Id::NONE { MISS } else { scene.geometry.material(hit) };
+            let material = if hit.id == Id::NONE { MISS } else { world.geometry.material(hit) };
             self.materials.push(material);
             if material != MISS {
                 self.starts[material as usize + 1] += 1;
@@ -315,24 +318,25 @@ impl Workspace {
         }
     }
 
-    fn shade<R: Rules>(&mut self, scene: &CompiledScene, rules: &R) {
-        for material in 0..scene.materials.len() {
-            let range = self.starts[material] as usize..self.starts[material + 1] as usize;
+    fn shade<R: Rules>(&mut self, world: &World, rules: &R) {
+        for (index, material) in world.materials.iter().enumerate() {
+            let range = self.starts[index] as usize..self.starts[index + 1] as usize;
             if range.is_empty() {
                 continue;
             }
             let members = &self.sorted[range];
-            let batch = Batch { scene, material: material as u32, members, rays: &self.rays, hits: &self.hits };
+            let (geometry, rays, hits) = (&world.geometry, &self.rays, &self.hits);
+            let batch = Batch { geometry, material, members, rays, hits };
             self.colors.clear();
             rules.shade(&batch, &mut self.textures, &mut self.colors, &mut self.queues);
         }
     }
 
     /// Traces the shadow rays and hands out what arrives.
-    fn light(&mut self, scene: &CompiledScene) {
+    fn light(&mut self, world: &World) {
         let queues = &mut self.queues;
         queues.stats.shadow_rays += queues.shadows.len() as u64;
-        scene.geometry.occluded(&queues.shadows, &mut self.blocked, &mut self.scratch);
+        world.geometry.occluded(&queues.shadows, &mut self.blocked, &mut self.scratch);
         for (shadow, &blocked) in queues.shadows.iter().zip(&self.blocked) {
             if !blocked {
                 queues.nodes[shadow.node as usize].direct += shadow.contribution;

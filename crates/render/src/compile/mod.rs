@@ -12,19 +12,17 @@ use crate::camera::Camera;
 use crate::filter::FilterSampler;
 use crate::geometry::Geometry;
 use crate::light::Light;
-use crate::material::Material;
 use crate::options::{CompileOptions, RenderOptions};
 use crate::report::{Grid, Report, ReportCamera, ReportLight};
 use crate::sampler::SampleKey;
 use crate::sunflow::Sunflow;
-use crate::wave::{CameraSample, Target};
+use crate::wave::{CameraSample, Target, World};
 
 /// A scene ready to render: immutable and valid.
 #[derive(Debug)]
 pub struct CompiledScene {
     pub(crate) size: [u32; 2],
-    pub(crate) geometry: Geometry,
-    pub(crate) materials: Vec<Material>,
+    pub(crate) world: World,
     pub(crate) meaning: Meaning,
     pub(crate) sampling: Sampling,
 }
@@ -127,8 +125,9 @@ pub fn compile(scene: &Scene, loader: &dyn Loader, options: &CompileOptions) -> 
         }
     };
     let sampling = sampling(scene, dialect, options);
-    let compiled = CompiledScene { size, geometry: planned.geometry, materials, meaning, sampling };
-    if compiled.geometry.objects.is_empty() && scene.background.is_none() {
+    let world = World { geometry: planned.geometry, materials };
+    let compiled = CompiledScene { size, world, meaning, sampling };
+    if compiled.world.geometry.objects.is_empty() && scene.background.is_none() {
         diagnostics.push(Diagnostic::warning(None, "the scene shows nothing: it has no visible object"));
     } else if options.look.is_none() {
         note_darkness(scene, &compiled, &mut diagnostics);
@@ -266,7 +265,7 @@ fn note_darkness(scene: &Scene, compiled: &CompiledScene, diagnostics: &mut Diag
         })
         .collect();
     let mut results = Vec::new();
-    crate::wave::Workspace::default().trace(compiled, rules, &samples, &mut results);
+    crate::wave::Workspace::default().trace(&compiled.world, rules, &samples, &mut results);
     let mut lit: Vec<f32> = results
         .iter()
         .filter(|result| result.seen.object != crate::wave::Seen::NOTHING.object)

@@ -43,7 +43,7 @@ impl Report {
     /// Positions and normals of a chunk.
     #[inline(always)]
     pub(super) fn locate(&self, chunk: &Batch<'_>, points: &mut Points) {
-        let geometry = chunk.geometry();
+        let geometry = chunk.geometry;
         let mut curved = [false; CHUNK];
         for (i, (path, hit)) in chunk.iter().enumerate() {
             let position = path.ray.origin + path.ray.direction * hit.t;
