@@ -26,7 +26,7 @@ use crate::{interrupt, report, terminal};
 #[command(after_long_help = "\
 Examples:
   jaspe render scene.sc                                  writes scene.png here
-  jaspe render scene.sc -o /tmp/big.exr --resolution 3840x2160
+  jaspe render scene.sc -o big.exr --resolution 3840x2160
   jaspe render scene.sc --samples 4 --show               a quick look in the terminal
   jaspe render scene.sc --override normals               what the surfaces look like
   jaspe render scene.sc --set floor.depth=3 --set floor.scale=2.5
