@@ -57,11 +57,12 @@ impl Point<'_> {
 impl Rules for Sunflow {
     fn shade(&self, batch: &Batch<'_>, textures: &mut TextureBatch, colors: &mut Vec<Vec3>, queues: &mut Queues) {
         let material = batch.material;
-        albedos(batch, material, textures, colors);
+        let surfaces: Vec<Surface> = batch.iter().map(|(path, hit)| batch.geometry.surface(&path.ray, hit)).collect();
+        albedos(batch, &surfaces, textures, colors);
         queues.stats.texture_points += textures.len() as u64;
         textures.clear();
-        for ((path, hit), &color) in batch.iter().zip(colors.iter()) {
-            let point = self.point(batch, path, hit, color);
+        for (((path, hit), &surface), &color) in batch.iter().zip(&surfaces).zip(colors.iter()) {
+            let point = point(batch, path, hit, surface, color);
             if path.kind == RayKind::Camera {
                 let seen = Seen { object: hit.id.object, normal: point.surface.normal };
                 queues.seen[path.node as usize] = seen;
@@ -86,18 +87,16 @@ impl Rules for Sunflow {
 }
 
 /// Colours of a batch, one per member.
-fn albedos(batch: &Batch<'_>, material: &Material, textures: &mut TextureBatch, colors: &mut Vec<Vec3>) {
+fn albedos(batch: &Batch<'_>, surfaces: &[Surface], textures: &mut TextureBatch, colors: &mut Vec<Vec3>) {
     let geometry = batch.geometry;
-    match &material.albedo {
+    match &batch.material.albedo {
         Albedo::Color(color) => colors.resize(batch.members.len(), *color),
-        Albedo::Picture(picture) => colors.extend(batch.iter().map(|(path, hit)| {
-            let surface = geometry.surface(&path.ray, hit);
-            picture.smooth(geometry.uv(hit, surface.point))
-        })),
+        Albedo::Picture(picture) => colors.extend(
+            batch.iter().zip(surfaces).map(|((_, hit), surface)| picture.smooth(geometry.uv(hit, surface.point))),
+        ),
         Albedo::Procedural(procedural) => {
             textures.clear();
-            for (path, hit) in batch.iter() {
-                let surface = geometry.surface(&path.ray, hit);
+            for ((_, hit), surface) in batch.iter().zip(surfaces) {
                 textures.push(match procedural.texture.space() {
                     Space::World => surface.point,
                     Space::Local => geometry.objects[hit.id.object as usize].object_from_world.point(surface.point),
@@ -112,19 +111,19 @@ fn albedos(batch: &Batch<'_>, material: &Material, textures: &mut TextureBatch, 
     }
 }
 
-impl Sunflow {
-    fn point<'a>(&self, batch: &Batch<'_>, path: &'a PathRay, hit: &'a Hit, color: Vec3) -> Point<'a> {
-        let mut surface = batch.geometry.surface(&path.ray, hit);
-        let inside = path.ray.direction.dot(surface.geometric) >= 0.0;
-        if inside {
-            surface.geometric = -surface.geometric;
-            surface.normal = -surface.normal;
-        }
-        let cosine = (-path.ray.direction.dot(surface.normal)).max(0.0);
-        let skip = if batch.geometry.is_flat(hit.id.object) { hit.id } else { Id::NONE };
-        Point { path, hit, surface, inside, cosine, color, skip }
+/// A hit with its surface turned towards the ray.
+fn point<'a>(batch: &Batch<'_>, path: &'a PathRay, hit: &'a Hit, mut surface: Surface, color: Vec3) -> Point<'a> {
+    let inside = path.ray.direction.dot(surface.geometric) >= 0.0;
+    if inside {
+        surface.geometric = -surface.geometric;
+        surface.normal = -surface.normal;
     }
+    let cosine = (-path.ray.direction.dot(surface.normal)).max(0.0);
+    let skip = if batch.geometry.is_flat(hit.id.object) { hit.id } else { Id::NONE };
+    Point { path, hit, surface, inside, cosine, color, skip }
+}
 
+impl Sunflow {
     fn respond(&self, batch: &Batch<'_>, material: &Material, point: &Point<'_>, queues: &mut Queues) {
         let path = point.path;
         let specular = path.kind != RayKind::Glossy;

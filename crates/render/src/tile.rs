@@ -334,6 +334,9 @@ fn differ(a: &Accumulator, b: &Accumulator, threshold: f32) -> bool {
     if a.seen.object != b.seen.object || normals(a.seen.normal, b.seen.normal) {
         return true;
     }
-    let (a, b) = (a.mean(), b.mean());
-    a.iter().zip(&b).any(|(a, b)| (a - b).abs() > threshold * (a + b).abs())
+    // The test is the same at any scale, so sums over crossed weights do for means, without divisions.
+    a.sum.iter().zip(&b.sum).any(|(x, y)| {
+        let (x, y) = (x * b.weight, y * a.weight);
+        (x - y).abs() > threshold * (x + y).abs()
+    })
 }
