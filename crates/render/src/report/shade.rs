@@ -154,7 +154,8 @@ impl Sight {
         for i in 0..CHUNK {
             let (x, y, z) = (light.position.x - px[i], light.position.y - py[i], light.position.z - pz[i]);
             let distance = (x * x + y * y + z * z).sqrt();
-            (dx[i], dy[i], dz[i]) = (x / distance, y / distance, z / distance);
+            let inverse = 1.0 / distance;
+            (dx[i], dy[i], dz[i]) = (x * inverse, y * inverse, z * inverse);
             sight.distance[i] = distance;
             let cosine = nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i];
             sight.cosine[i] = cosine;
