@@ -219,14 +219,16 @@ mod avx2 {
     }
 }
 
-/// Whether the kernels may use AVX2: the processor has it, and `JASPE_SIMD` does not forbid it.
+/// Whether the kernels may use AVX2: the processor has it with all that comes with it, and `JASPE_SIMD` does not
+/// forbid it.
 #[cfg(target_arch = "x86_64")]
 pub(crate) fn has_avx2() -> bool {
     use std::sync::OnceLock;
     static HAS: OnceLock<bool> = OnceLock::new();
     *HAS.get_or_init(|| {
-        let forbidden = matches!(std::env::var("JASPE_SIMD").as_deref(), Ok("scalar" | "sse"));
-        !forbidden && is_x86_feature_detected!("avx2")
+        let companions =
+            is_x86_feature_detected!("bmi1") && is_x86_feature_detected!("lzcnt") && is_x86_feature_detected!("popcnt");
+        companions && jaspe_noise::simd::level() >= jaspe_noise::simd::Level::Avx2
     })
 }
 
