@@ -9,8 +9,9 @@ use image::ExtendedColorType::{Rgb8, Rgb16, Rgba8, Rgba16};
 use image::codecs::{bmp, hdr, jpeg, png, tiff};
 use image::{ExtendedColorType, ImageEncoder};
 
-use crate::develop::{Alpha, Depth, Image, Samples, develop, is_transparent, srgb_decode};
+use crate::develop::{Alpha, Depth, Image, Samples, develop, is_transparent};
 use crate::film::{Encoding, Film, Pixel};
+use jaspe_scene::srgb_decode;
 
 /// A kind of picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

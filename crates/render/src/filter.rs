@@ -75,7 +75,7 @@ fn value(kind: Filter, x: f64) -> f64 {
     match kind {
         Filter::Box => 1.0,
         Filter::Triangle => (1.0 - x).max(0.0),
-        Filter::Gaussian => math::exp(-x * x) - math::exp(-9.0),
+        Filter::Gaussian => jaspe_noise::math::exp(-x * x) - jaspe_noise::math::exp(-9.0),
         Filter::Mitchell => cubic(x, 1.0 / 3.0, 1.0 / 3.0),
         Filter::CatmullRom => cubic(x, 0.0, 0.5),
         Filter::Bspline => cubic(x, 1.0, 0.0),

@@ -53,9 +53,10 @@ mod tile;
 mod wave;
 
 pub use compile::{Compilation, CompiledScene, compile};
-pub use develop::{Alpha, Depth, Image, Samples, develop, srgb_decode, srgb_encode};
+pub use develop::{Alpha, Depth, Image, Samples, develop};
 pub use encode::{EncodeError, Format, UnknownFormat, encode};
 pub use film::{Encoding, Film, Pixel};
+pub use jaspe_scene::{srgb_decode, srgb_encode};
 pub use options::{Cancelled, CompileOptions, Look, Observer, RenderOptions, Stats};
 pub use picture::{DecodeError, Picture, PicturePixels};
 

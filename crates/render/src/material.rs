@@ -7,7 +7,6 @@ use jaspe_texture::{Space, Texture};
 
 use crate::options::Look;
 use crate::picture::{Picture, PicturePixels};
-use crate::{develop, math};
 
 /// The material of objects whose shader is missing: black, as in Sunflow.
 pub(crate) const BLACK: u32 = 0;
@@ -110,7 +109,7 @@ fn decode_display(value: f32) -> f32 {
     use std::sync::LazyLock;
     const STEPS: usize = 4096;
     static TABLE: LazyLock<Vec<f32>> =
-        LazyLock::new(|| (0..=STEPS + 1).map(|i| develop::srgb_decode(i as f64 / STEPS as f64) as f32).collect());
+        LazyLock::new(|| (0..=STEPS + 1).map(|i| jaspe_scene::srgb_decode(i as f64 / STEPS as f64) as f32).collect());
     let at = value.clamp(0.0, 1.0) * STEPS as f32;
     let i = at as usize;
     let table = &*TABLE;
@@ -133,7 +132,7 @@ impl PictureMap {
     pub fn linear(picture: Picture) -> Self {
         let decode = |i: usize| {
             let value = i as f64 / 255.0;
-            (if picture.grayscale { value } else { develop::srgb_decode(value) }) as f32
+            (if picture.grayscale { value } else { jaspe_scene::srgb_decode(value) }) as f32
         };
         PictureMap::new(std::array::from_fn(decode), picture)
     }
@@ -191,6 +190,6 @@ pub(crate) fn schlick(color: Vec3, cosine: f32) -> Vec3 {
 
 /// What is left of the light after `length` world units of absorbing glass.
 pub(crate) fn transmittance(absorption: Vec3, length: f32) -> Vec3 {
-    let along = |a: f32| if a == 0.0 { 1.0 } else { math::exp(-f64::from(a * length)) as f32 };
+    let along = |a: f32| if a == 0.0 { 1.0 } else { jaspe_noise::math::exp(-f64::from(a * length)) as f32 };
     Vec3::new(along(absorption.x), along(absorption.y), along(absorption.z))
 }

@@ -1,6 +1,7 @@
 //! Numbers that must agree on every platform: no platform trigonometry, no fused multiply-add.
 
 use glam::Vec3;
+use jaspe_noise::math::{exp, ln};
 
 /// Sine and cosine of an angle in degrees; exact at multiples of 90°.
 pub(crate) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
@@ -120,33 +121,6 @@ pub(crate) fn offset(point: Vec3, side: Vec3) -> Vec3 {
         f32::from_bits(if p < 0.0 { bits - step } else { bits + step } as u32)
     };
     Vec3::new(shift(point.x, side.x), shift(point.y, side.y), shift(point.z, side.z))
-}
-
-/// e to the power of x; relative error below 1e-15.
-pub(crate) fn exp(x: f64) -> f64 {
-    let x = x.clamp(-708.0, 709.0);
-    let k = (x * std::f64::consts::LOG2_E).round();
-    // ln 2 in two parts, the first with so few bits that its product with k is exact.
-    let r = (x - k * 0.693_147_180_369_123_8) - k * 1.908_214_929_270_587_7e-10;
-    // |r| ≤ ln 2 / 2: the first term left out is below 1e-17.
-    let series = (1..=13).rev().fold(1.0, |sum, n| 1.0 + sum * r / f64::from(n));
-    series * f64::from_bits(((k as i64 + 1023) as u64) << 52)
-}
-
-/// The natural logarithm of a positive, normal number; error below 1e-15 or relative 1e-15.
-pub(crate) fn ln(x: f64) -> f64 {
-    let bits = x.to_bits();
-    let mut exponent = (bits >> 52) as i64 - 1023;
-    let mut mantissa = f64::from_bits(bits & 0x000f_ffff_ffff_ffff | 0x3ff0_0000_0000_0000);
-    if mantissa > std::f64::consts::SQRT_2 {
-        mantissa *= 0.5;
-        exponent += 1;
-    }
-    // ln m = 2 artanh s; |s| ≤ 0.172, so that the first term left out is below 1e-17.
-    let s = (mantissa - 1.0) / (mantissa + 1.0);
-    let s2 = s * s;
-    let series = (0..11).rev().fold(0.0, |sum, n| sum * s2 + 1.0 / f64::from(2 * n + 1));
-    2.0 * s * series + exponent as f64 * std::f64::consts::LN_2
 }
 
 /// `base` to the power of `exponent`, for a base from 0 to 1 and any exponent of 0 or more.

@@ -32,10 +32,12 @@ mod lexer;
 mod number;
 mod parser;
 mod source;
+mod srgb;
 mod suggest;
 
 pub use description::{Dialect, Scene};
 pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
 pub use parser::{parse, read, set};
 pub use source::{DiskLoader, Loader, MemoryLoader, Position, Source, Sources, Span, Spanned};
+pub use srgb::{srgb_decode, srgb_encode};
 pub use suggest::nearest;

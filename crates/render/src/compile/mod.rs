@@ -274,7 +274,7 @@ fn note_darkness(scene: &Scene, compiled: &CompiledScene, diagnostics: &mut Diag
     lit.sort_by(f32::total_cmp);
     // The brightest twentieth of what is seen decides.
     let Some(bright) = lit.get(lit.len() * 19 / 20) else { return };
-    if crate::develop::srgb_encode(f64::from(*bright)) < DARK {
+    if jaspe_scene::srgb_encode(f64::from(*bright)) < DARK {
         diagnostics.push(
             Diagnostic::note(light.span, "the lights are so weak that the picture will be nearly black")
                 .hint("`power` is radiant power here, and light falls off with the square of the distance")

@@ -12,7 +12,7 @@ mod shader;
 mod transform;
 
 pub use camera::{Camera, Lens, View};
-pub use color::{Color, ColorSpec, srgb_decode, srgb_encode};
+pub use color::{Color, ColorSpec};
 pub use image::{Filter, Image};
 pub use light::{Light, LightKind};
 pub use object::{Geometry, Instance, Mesh, Object, Plane, VertexData};
