@@ -10,6 +10,8 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 #[cfg(target_arch = "x86_64")]
+mod pipeline;
+#[cfg(target_arch = "x86_64")]
 mod sse;
 
 use std::sync::OnceLock;

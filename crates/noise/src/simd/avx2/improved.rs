@@ -9,56 +9,41 @@ use std::arch::x86_64::*;
 
 use crate::basis::Tables;
 use crate::simd::Terms;
+use crate::simd::pipeline::{self, Halves, Octave, Point};
 use crate::table::CornerTables;
 
 /// Points in a vector.
 const LANES: usize = 8;
 
-/// Points whose octaves are summed before the next ones: their coordinates and sums stay in the first cache.
-const BLOCK: usize = 512;
+/// Points in a step, and vectors.
+const STEP: usize = 32;
+const VECTORS: usize = STEP / LANES;
 
 /// The sums at the first points, a multiple of 8 of them; returns how many.
 #[target_feature(enable = "avx2,fma")]
 pub(in crate::simd) fn sum(tables: &Tables, terms: &Terms, points: [&[f32]; 3], values: &mut [f32]) -> usize {
-    let count = values.len() / LANES * LANES;
-    for start in (0..count).step_by(BLOCK) {
-        let at = start..count.min(start + BLOCK);
-        let points = [
-            points[0][at.clone()].as_chunks().0,
-            points[1][at.clone()].as_chunks().0,
-            points[2][at.clone()].as_chunks().0,
-        ];
-        let values = values[at].as_chunks_mut().0;
-        // (An amplitude of 1 lets the first octave overwrite what is there.)
-        if terms.octaves == 0 || terms.amplitude(0) != 1.0 {
-            values.fill([0.0; LANES]);
-        }
+    let tables = &tables.corners;
+    let done = pipeline::sum(&Staged(tables), terms, points, values);
+    let (rest, _) = values[done..].as_chunks_mut::<LANES>();
+    let vectors = |axis: usize| points[axis][done..].as_chunks::<LANES>().0;
+    let (x, y, z) = (vectors(0), vectors(1), vectors(2));
+    for (i, sums) in rest.iter_mut().enumerate() {
+        *sums = [0.0; LANES];
         let mut frequency = 1.0;
         for index in 0..terms.octaves {
             let amplitude = terms.amplitude(index) as f32;
             let octave = Octave { frequency: frequency as f32, amplitude, absolute: terms.absolute };
-            match index {
-                0 if amplitude == 1.0 => add::<true>(&tables.corners, &octave, points, values),
-                _ => add::<false>(&tables.corners, &octave, points, values),
+            let (mut cells, mut codes) = ([Stage::EMPTY; 3], Stage::EMPTY);
+            for (cells, numbers) in cells.iter_mut().zip([&x[i], &y[i], &z[i]]) {
+                find_cells::<false>(octave.frequency, numbers, &mut cells.0[0]);
             }
+            hash(tables, &cells, 0, &mut codes);
+            add_vector::<false>(&codes.0[0], &octave, [&x[i], &y[i], &z[i]], sums);
             frequency *= terms.lacunarity;
         }
     }
-    count
+    done + rest.len() * LANES
 }
-
-/// One octave of a sum.
-struct Octave {
-    frequency: f32,
-    amplitude: f32,
-    absolute: bool,
-}
-
-/// Vectors of numbers in memory.
-type Column<'a> = &'a [[f32; LANES]];
-
-/// Vectors that are staged at a time.
-const VECTORS: usize = 8;
 
 /// Numbers of the points of a step. (Aligned, or vectors may straddle cache lines.)
 #[repr(align(64))]
@@ -68,64 +53,75 @@ impl Stage {
     const EMPTY: Stage = Stage([[0; LANES]; VECTORS]);
 }
 
-/// Adds one octave; the first one overwrites what was there.
-#[inline]
-#[target_feature(enable = "avx2,fma")]
-fn add<const FIRST: bool>(tables: &CornerTables, octave: &Octave, points: [Column; 3], values: &mut [[f32; LANES]]) {
-    let (whole, rest) = values.as_chunks_mut::<VECTORS>();
-    let [x, y, z] = points;
-    let ((x, rest_x), (y, rest_y), (z, rest_z)) = (x.as_chunks(), y.as_chunks(), z.as_chunks());
-    let (mut cells, mut codes) = ([Stage::EMPTY; 3], [Stage::EMPTY; 2]);
-    let count = whole.len();
-    assert!(x.len() == count && y.len() == count && z.len() == count);
-    if let Some((last_sums, sums)) = whole.split_last_mut() {
-        find_step_cells::<FIRST>(octave, [&x[0], &y[0], &z[0]], &mut cells);
+/// The codes of a step, and room for those of the next one.
+struct Codes {
+    stages: [Stage; 2],
+    current: usize,
+}
+
+/// The kernel whose codes go through memory. It exists only where the machine has AVX2.
+struct Staged<'a>(&'a CornerTables);
+
+impl Halves<STEP> for Staged<'_> {
+    type Codes = Codes;
+
+    #[inline(always)]
+    fn hash(&self, frequency: f32, point: Point<STEP>) -> Codes {
+        let (mut cells, mut codes) = ([Stage::EMPTY; 3], Codes { stages: [Stage::EMPTY; 2], current: 0 });
+        // SAFETY, here and below: the machine has AVX2.
+        unsafe { find_step_cells::<false>(frequency, point, &mut cells) };
         for i in 0..VECTORS {
-            hash(tables, &cells, i, &mut codes[0]);
+            hash(self.0, &cells, i, &mut codes.stages[0]);
         }
-        for (index, sums) in sums.iter_mut().enumerate() {
-            let next = index + 1;
-            find_step_cells::<FIRST>(octave, [&x[next], &y[next], &z[next]], &mut cells);
-            let [even, odd] = &mut codes;
-            let (codes, next_codes) = if index % 2 == 0 { (&*even, odd) } else { (&*odd, even) };
-            let (x, y, z) = (&x[index], &y[index], &z[index]);
-            for i in 0..VECTORS {
-                hash(tables, &cells, i, next_codes);
-                add_vector::<FIRST>(&codes.0[i], octave, [&x[i], &y[i], &z[i]], &mut sums[i]);
-            }
-        }
-        let last = count - 1;
-        for i in 0..VECTORS {
-            let points = [&x[last][i], &y[last][i], &z[last][i]];
-            add_vector::<FIRST>(&codes[last % 2].0[i], octave, points, &mut last_sums[i]);
-        }
+        codes
     }
-    for (i, sums) in rest.iter_mut().enumerate() {
-        let points = [&rest_x[i], &rest_y[i], &rest_z[i]];
-        for (cells, numbers) in cells.iter_mut().zip(points) {
-            find_cells::<FIRST>(octave, numbers, &mut cells.0[0]);
+
+    #[inline(always)]
+    fn step<const ALONE: bool>(
+        &self,
+        octave: &Octave,
+        point: Point<STEP>,
+        sums: &mut [f32; STEP],
+        codes: &mut Codes,
+        (frequency, next): (f32, Point<STEP>),
+    ) {
+        let mut cells = [Stage::EMPTY; 3];
+        unsafe { find_step_cells::<ALONE>(frequency, next, &mut cells) };
+        let [x, y, z] = point.map(|coordinates| coordinates.as_chunks().0);
+        let [even, odd] = &mut codes.stages;
+        let (current, next) = if codes.current == 0 { (&*even, odd) } else { (&*odd, even) };
+        for (i, sums) in sums.as_chunks_mut().0.iter_mut().enumerate() {
+            hash(self.0, &cells, i, next);
+            unsafe { add_vector::<ALONE>(&current.0[i], octave, [&x[i], &y[i], &z[i]], sums) };
         }
-        hash(tables, &cells, 0, &mut codes[0]);
-        add_vector::<FIRST>(&codes[0].0[0], octave, points, sums);
+        codes.current = 1 - codes.current;
+    }
+
+    #[inline(always)]
+    fn finish<const ALONE: bool>(&self, octave: &Octave, point: Point<STEP>, sums: &mut [f32; STEP], codes: &Codes) {
+        let [x, y, z] = point.map(|coordinates| coordinates.as_chunks().0);
+        for (i, sums) in sums.as_chunks_mut().0.iter_mut().enumerate() {
+            unsafe { add_vector::<ALONE>(&codes.stages[codes.current].0[i], octave, [&x[i], &y[i], &z[i]], sums) };
+        }
     }
 }
 
 /// Eight coordinates, times the frequency; as they are in the first octave, whose frequency is 1.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn load<const FIRST: bool>(numbers: &[f32; LANES], octave: &Octave) -> __m256 {
+fn load<const ALONE: bool>(numbers: &[f32; LANES], frequency: f32) -> __m256 {
     // SAFETY: there are eight.
     let numbers = unsafe { _mm256_loadu_ps(numbers.as_ptr()) };
-    if FIRST { numbers } else { _mm256_mul_ps(_mm256_set1_ps(octave.frequency), numbers) }
+    if ALONE { numbers } else { _mm256_mul_ps(_mm256_set1_ps(frequency), numbers) }
 }
 
 /// The cells of the points of a step.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn find_step_cells<const FIRST: bool>(octave: &Octave, points: [&[[f32; LANES]; VECTORS]; 3], cells: &mut [Stage; 3]) {
+fn find_step_cells<const ALONE: bool>(frequency: f32, points: Point<STEP>, cells: &mut [Stage; 3]) {
     for (cells, numbers) in cells.iter_mut().zip(points) {
-        for (cells, numbers) in cells.0.iter_mut().zip(numbers) {
-            find_cells::<FIRST>(octave, numbers, cells);
+        for (cells, numbers) in cells.0.iter_mut().zip(numbers.as_chunks().0) {
+            find_cells::<ALONE>(frequency, numbers, cells);
         }
     }
 }
@@ -133,8 +129,8 @@ fn find_step_cells<const FIRST: bool>(octave: &Octave, points: [&[[f32; LANES]; 
 /// The cells of eight coordinates.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn find_cells<const FIRST: bool>(octave: &Octave, numbers: &[f32; LANES], cells: &mut [u32; LANES]) {
-    let cell = _mm256_cvttps_epi32(_mm256_floor_ps(load::<FIRST>(numbers, octave)));
+fn find_cells<const ALONE: bool>(frequency: f32, numbers: &[f32; LANES], cells: &mut [u32; LANES]) {
+    let cell = _mm256_cvttps_epi32(_mm256_floor_ps(load::<ALONE>(numbers, frequency)));
     // SAFETY: there is room for eight.
     unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), cell) };
 }
@@ -153,29 +149,30 @@ fn hash(tables: &CornerTables, cells: &[Stage; 3], vector: usize, codes: &mut St
 /// Adds one octave at eight points.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
-fn add_vector<const FIRST: bool>(
+fn add_vector<const ALONE: bool>(
     codes: &[u32; LANES],
     octave: &Octave,
     points: [&[f32; LANES]; 3],
     sum: &mut [f32; LANES],
 ) {
-    let position =
-        [load::<FIRST>(points[0], octave), load::<FIRST>(points[1], octave), load::<FIRST>(points[2], octave)];
+    let load = |axis: usize| load::<ALONE>(points[axis], octave.frequency);
     // SAFETY: there are eight codes.
-    let noise = blend(unsafe { _mm256_loadu_si256(codes.as_ptr().cast()) }, position);
+    let noise = blend(unsafe { _mm256_loadu_si256(codes.as_ptr().cast()) }, [load(0), load(1), load(2)]);
     // The mask that takes the sign off, or nothing.
     let keep = _mm256_castsi256_ps(_mm256_set1_epi32(if octave.absolute { i32::MAX } else { -1 }));
-    let term = _mm256_and_ps(noise, keep);
+    let (term, amplitude) = (_mm256_and_ps(noise, keep), _mm256_set1_ps(octave.amplitude));
     // SAFETY: there are eight sums.
     unsafe {
-        let before = _mm256_loadu_ps(sum.as_ptr());
-        let total =
-            if FIRST { term } else { _mm256_add_ps(before, _mm256_mul_ps(_mm256_set1_ps(octave.amplitude), term)) };
+        // (Fused with zero, which makes −0 to +0: the product is rounded as it is alone.)
+        let total = match ALONE {
+            true => _mm256_fmadd_ps(amplitude, term, _mm256_setzero_ps()),
+            false => _mm256_add_ps(_mm256_loadu_ps(sum.as_ptr()), _mm256_mul_ps(amplitude, term)),
+        };
         _mm256_storeu_ps(sum.as_mut_ptr(), total);
     }
 }
 
-/// The noise of eight points from the codes of [`CornerTables::hash`].
+/// The noise (its zeros of either sign) of eight points from the codes of [`CornerTables::hash`].
 #[inline]
 #[target_feature(enable = "avx2,fma")]
 fn blend(codes: __m256i, position: [__m256; 3]) -> __m256 {
@@ -193,7 +190,7 @@ fn blend(codes: __m256i, position: [__m256; 3]) -> __m256 {
         lerp(u, dot::<4, 24>(codes, x, y, z1), dot::<20, 8>(codes, x1, y, z1)),
         lerp(u, dot::<12, 16>(codes, x, y1, z1), dot::<28, 0>(codes, x1, y1, z1)),
     );
-    _mm256_add_ps(lerp(fade(z), low, high), _mm256_setzero_ps())
+    lerp(fade(z), low, high)
 }
 
 #[inline]

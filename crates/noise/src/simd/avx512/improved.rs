@@ -10,12 +10,10 @@ use std::arch::x86_64::*;
 use super::{EDGE_X, EDGE_Y, EDGE_Z};
 use crate::basis::Tables;
 use crate::simd::Terms;
+use crate::simd::pipeline::{self, Halves, Octave, Point};
 
 /// Points that take part in one step.
 const STEP: usize = 64;
-
-/// Points whose octaves are summed before the next ones: their coordinates and sums stay in the first cache.
-const BLOCK: usize = 512;
 
 /// The tables in registers.
 struct Registers {
@@ -27,32 +25,49 @@ struct Registers {
 /// The sums at the first points, a multiple of 64 of them; returns how many.
 #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
 pub(in crate::simd) fn sum(tables: &Tables, terms: &Terms, points: [&[f32]; 3], values: &mut [f32]) -> usize {
-    let count = values.len() / STEP * STEP;
     let registers = Registers {
         bytes: load_table(&tables.permutation.bytes),
         next: load_table(&tables.permutation.next),
         edges: load_table(&tables.edges.bytes),
     };
-    for start in (0..count).step_by(BLOCK) {
-        let at = start..count.min(start + BLOCK);
-        let points = [&points[0][at.clone()], &points[1][at.clone()], &points[2][at.clone()]];
-        let values = &mut values[at];
-        // (An amplitude of 1 lets the first octave overwrite what is there.)
-        if terms.octaves == 0 || terms.amplitude(0) != 1.0 {
-            values.fill(0.0);
-        }
-        let mut frequency = 1.0;
-        for index in 0..terms.octaves {
-            let amplitude = terms.amplitude(index) as f32;
-            let octave = Octave { frequency: frequency as f32, amplitude, absolute: terms.absolute };
-            match index {
-                0 if amplitude == 1.0 => add::<true>(&registers, &octave, points, values),
-                _ => add::<false>(&registers, &octave, points, values),
-            }
-            frequency *= terms.lacunarity;
+    pipeline::sum(&registers, terms, points, values)
+}
+
+impl Halves<STEP> for Registers {
+    type Codes = [__m512i; 4];
+
+    #[inline(always)]
+    fn hash(&self, frequency: f32, point: Point<STEP>) -> Self::Codes {
+        // SAFETY, here and below: tables are in registers only where the machine has them.
+        unsafe { hash::<false>(self, frequency, point) }
+    }
+
+    #[inline(always)]
+    fn step<const ALONE: bool>(
+        &self,
+        octave: &Octave,
+        point: Point<STEP>,
+        sums: &mut [f32; STEP],
+        codes: &mut Self::Codes,
+        (frequency, next): (f32, Point<STEP>),
+    ) {
+        unsafe {
+            let next = hash::<ALONE>(self, frequency, next);
+            add_step::<ALONE>(codes, octave, point, sums);
+            *codes = next;
         }
     }
-    count
+
+    #[inline(always)]
+    fn finish<const ALONE: bool>(
+        &self,
+        octave: &Octave,
+        point: Point<STEP>,
+        sums: &mut [f32; STEP],
+        codes: &[__m512i; 4],
+    ) {
+        unsafe { add_step::<ALONE>(codes, octave, point, sums) };
+    }
 }
 
 #[inline]
@@ -67,46 +82,20 @@ fn load_table(bytes: &[u8; 256]) -> [__m512i; 4] {
     registers
 }
 
-/// One octave of a sum.
-struct Octave {
-    frequency: f32,
-    amplitude: f32,
-    absolute: bool,
-}
-
 /// Sixteen coordinates of 64, times the frequency; as they are in the first octave, whose frequency is 1.
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn load<const FIRST: bool>(numbers: &[f32; STEP], group: usize, frequency: __m512) -> __m512 {
+fn load<const ALONE: bool>(numbers: &[f32; STEP], group: usize, frequency: __m512) -> __m512 {
     let (groups, _) = numbers.as_chunks::<16>();
     // SAFETY: the group has sixteen numbers.
     let numbers = unsafe { _mm512_loadu_ps(groups[group].as_ptr()) };
-    if FIRST { numbers } else { _mm512_mul_ps(frequency, numbers) }
-}
-
-/// Adds one octave; the first one overwrites what was there.
-#[inline]
-#[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
-fn add<const FIRST: bool>(tables: &Registers, octave: &Octave, points: [&[f32]; 3], values: &mut [f32]) {
-    let frequency = _mm512_set1_ps(octave.frequency);
-    let (x, y, z) = (points[0].as_chunks().0, points[1].as_chunks().0, points[2].as_chunks().0);
-    let (sums, _) = values.as_chunks_mut::<STEP>();
-    let Some((last_sums, sums)) = sums.split_last_mut() else { return };
-    let last = sums.len();
-    assert!(x.len() == last + 1 && y.len() == last + 1 && z.len() == last + 1);
-    let mut codes = hash::<FIRST>(tables, frequency, [&x[0], &y[0], &z[0]]);
-    for (i, sums) in sums.iter_mut().enumerate() {
-        let next = hash::<FIRST>(tables, frequency, [&x[i + 1], &y[i + 1], &z[i + 1]]);
-        add_step::<FIRST>(&codes, octave, [&x[i], &y[i], &z[i]], sums);
-        codes = next;
-    }
-    add_step::<FIRST>(&codes, octave, [&x[last], &y[last], &z[last]], last_sums);
+    if ALONE { numbers } else { _mm512_mul_ps(frequency, numbers) }
 }
 
 /// Adds one octave at 64 points, whose cells are hashed already.
 #[inline]
 #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
-fn add_step<const FIRST: bool>(
+fn add_step<const ALONE: bool>(
     codes: &[__m512i; 4],
     octave: &Octave,
     [x, y, z]: [&[f32; STEP]; 3],
@@ -119,17 +108,20 @@ fn add_step<const FIRST: bool>(
     macro_rules! add_group {
         ($group:literal, $low:literal, $high:literal) => {
             let position = [
-                load::<FIRST>(x, $group, frequency),
-                load::<FIRST>(y, $group, frequency),
-                load::<FIRST>(z, $group, frequency),
+                load::<ALONE>(x, $group, frequency),
+                load::<ALONE>(y, $group, frequency),
+                load::<ALONE>(z, $group, frequency),
             ];
             let noise = blend::<$low, $high>(codes, position);
             let term = _mm512_castsi512_ps(_mm512_and_si512(_mm512_castps_si512(noise), keep));
             // SAFETY: a group has sixteen numbers.
             unsafe {
                 let sum = groups[$group].as_mut_ptr();
-                let total =
-                    if FIRST { term } else { _mm512_add_ps(_mm512_loadu_ps(sum), _mm512_mul_ps(amplitude, term)) };
+                // (Fused with zero, which makes −0 to +0: the product is rounded as it is alone.)
+                let total = match ALONE {
+                    true => _mm512_fmadd_ps(amplitude, term, _mm512_setzero_ps()),
+                    false => _mm512_add_ps(_mm512_loadu_ps(sum), _mm512_mul_ps(amplitude, term)),
+                };
                 _mm512_storeu_ps(sum, total);
             }
         };
@@ -144,10 +136,11 @@ fn add_step<const FIRST: bool>(
 /// 16 · group + i; its low four bits are the code at the lower end, its high ones that at the upper end.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi,avx512vbmi2")]
-fn hash<const FIRST: bool>(tables: &Registers, frequency: __m512, points: [&[f32; STEP]; 3]) -> [__m512i; 4] {
-    let x = cells::<FIRST>(points[0], frequency);
-    let y = cells::<FIRST>(points[1], frequency);
-    let z = cells::<FIRST>(points[2], frequency);
+fn hash<const ALONE: bool>(tables: &Registers, frequency: f32, points: Point<STEP>) -> [__m512i; 4] {
+    let frequency = _mm512_set1_ps(frequency);
+    let x = cells::<ALONE>(points[0], frequency);
+    let y = cells::<ALONE>(points[1], frequency);
+    let z = cells::<ALONE>(points[2], frequency);
     let mask = _mm512_movepi8_mask(x);
     let left = _mm512_add_epi8(lookup(&tables.bytes, x, mask), y);
     let right = _mm512_add_epi8(lookup(&tables.next, x, mask), y);
@@ -169,9 +162,9 @@ fn hash<const FIRST: bool>(tables: &Registers, frequency: __m512, points: [&[f32
 /// The low bytes of 64 cells: the byte `group` of the lane `i` belongs to the coordinate 16 · group + i.
 #[inline]
 #[target_feature(enable = "avx512f,avx512vbmi2")]
-fn cells<const FIRST: bool>(numbers: &[f32; STEP], frequency: __m512) -> __m512i {
+fn cells<const ALONE: bool>(numbers: &[f32; STEP], frequency: __m512) -> __m512i {
     let group = |group| {
-        let numbers = load::<FIRST>(numbers, group, frequency);
+        let numbers = load::<ALONE>(numbers, group, frequency);
         _mm512_cvt_roundps_epi32::<{ _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC }>(numbers)
     };
     // Each step shifts the bytes so far down, and one in at the top.
@@ -190,7 +183,7 @@ fn lookup(table: &[__m512i; 4], index: __m512i, mask: __mmask64) -> __m512i {
     _mm512_mask_blend_epi8(mask, low, high)
 }
 
-/// The noise of sixteen points, whose codes stand at the bits `LOW` (lower end) and `HIGH` (upper end) of each lane.
+/// The noise (its zeros of either sign) of sixteen points, whose codes stand at the bits `LOW` (lower end) and `HIGH` (upper end) of each lane.
 #[inline]
 #[target_feature(enable = "avx512f,avx512dq,fma")]
 fn blend<const LOW: u32, const HIGH: u32>(codes: &[__m512i; 4], position: [__m512; 3]) -> __m512 {
@@ -208,7 +201,7 @@ fn blend<const LOW: u32, const HIGH: u32>(codes: &[__m512i; 4], position: [__m51
         lerp(u, dot::<HIGH>(codes[0], x, y, z1), dot::<HIGH>(codes[1], x1, y, z1)),
         lerp(u, dot::<HIGH>(codes[2], x, y1, z1), dot::<HIGH>(codes[3], x1, y1, z1)),
     );
-    _mm512_add_ps(lerp(fade(z), low, high), _mm512_setzero_ps())
+    lerp(fade(z), low, high)
 }
 
 #[inline]
