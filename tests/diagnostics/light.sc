@@ -1,5 +1,5 @@
 # error: 1-5 `light` lacks `type`
-# hint: types are `point` and `directional`
+# hint: types are `point`, `directional`, `spherical`, `meshlight`, `mesh`, `sunsky`, `ibl` and `cornellbox`
 light { color 1 1 1 power 10 p 0 0 0 }
 # error: 14-17 unknown light type `pint`
 # hint: did you mean `point`?
@@ -15,5 +15,4 @@ light { type point power 10 p 0 0 0 }
 light { type point }
 # error: 59-60 `radius` must be greater than 0, and is -1
 light { type directional source 0 0 4 target 0 0 0 radius -1 emit 1 1 1 }
-# warning: 1-5 skipped: light type `sunsky` is not supported yet
 light { type sunsky up 0 0 1 east 0 1 0 sundir 1 1 1 turbidity 4 }

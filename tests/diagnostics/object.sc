@@ -8,7 +8,7 @@ object { shader a type sphere c 0 0 0 }
 # hint: add `c 0 0 0`
 object { shader a type sphere r 1 }
 # error: 1-6 `object` lacks `type`
-# hint: types are `sphere`, `plane`, `box`, `generic-mesh`, `mesh` and `flat-mesh`
+# hint: types are `sphere`, `plane`, `box`, `generic-mesh`, `mesh`, `flat-mesh`, `file-mesh`, `bezier-mesh`, `teapot`, `gumbo`, `torus`, `cylinder`, `banchoff`, `sphereflake`, `julia`, `hair`, `particles` and `dlasurface`
 object { shader a c 0 0 0 r 1 }
 # error: 27-32 unknown keyword `sphere` in `sphere`
 # hint: expected `type`, `name`, `noinstance`, `shader`, `shaders`, `modifier`, `modifiers`, `transform`, `accel`, `c` or `r`
@@ -27,10 +27,9 @@ object { shader a type plane p 0 0 0 p 1 0 0 n 0 1 0 }
 # error: 35-35 `points` expects `2` and two corners, found `3`
 # hint: for example `points 2 -1 -1 -1 1 1 1`
 object { shader a type box points 3 0 0 0 1 1 1 }
-# warning: 1-6 skipped: object type `teapot` is not supported yet
 object { shader a type teapot subdivs 4 }
 # error: 24-27 unknown object type `quad`
-# hint: expected `sphere`, `plane`, `box`, `generic-mesh`, `mesh` or `flat-mesh`
+# hint: expected `sphere`, `plane`, `box`, `generic-mesh`, `mesh`, `flat-mesh`, `file-mesh`, `bezier-mesh`, `teapot`, `gumbo`, `torus`, `cylinder`, `banchoff`, `sphereflake`, `julia`, `hair`, `particles` or `dlasurface`
 object { shader a type quad points 4 0 0 0 1 0 0 1 1 0 0 1 0 }
 object { shader a type sphere name ball c 0 0 0 r 1 }
 # warning: 36-39 there is already an object or instance `ball`; names find the first one

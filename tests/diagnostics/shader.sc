@@ -23,10 +23,9 @@ shader { name f type glass eta 0 color 1 1 1 absorbtion.colour 1 1 1 }
 # hint: did you mean `diffuse`?
 shader { name g type difuse diff 1 1 1 }
 # error: 1-6 `shader` lacks `type`
-# hint: types are `constant`, `diffuse`, `phong`, `mirror`, `glass`, `fire`, `water`, `organic`, `wood`, `marble` and `stone`
+# hint: types are `constant`, `diffuse`, `phong`, `mirror`, `glass`, `shiny`, `ward`, `amb-occ`, `amb-occ2`, `uber`, `wireframe`, `view-caustics`, `view-irradiance`, `view-global`, `id`, `fire`, `water`, `organic`, `wood`, `marble` and `stone`
 shader { name h }
-# warning: 15-15 there is already shader `b`; names find the first one
+# warning: 15-15 there is already a shader `b`; names find the first one
 # label: [2] 15-15 first declared here
 shader { name b type mirror refl 1 1 1 }
-# warning: 1-6 skipped: shader type `ward` is not supported yet
 shader { name i type ward diff 1 1 1 spec 1 1 1 rough 0.1 0.1 }

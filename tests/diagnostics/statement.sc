@@ -17,12 +17,8 @@ override a
 texturepath }
 accel bih
 filter mitchell
-# warning: 1-2 skipped: `gi` is not supported yet
 gi { type path samples 16 }
 gi { type none }
-# warning: 1-7 skipped: `photons` is not supported yet
 photons { caustics 1000 kd 64 0.5 }
-# warning: 1-8 skipped: `modifier` is not supported yet
 modifier { name m type bump texture t.png scale 1 }
-# warning: 1-11 skipped: `lightserver` is not supported yet
 lightserver { shadows true }

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use std::{fs, io};
 
-use common::{OTHERS, SKELETON, scenes};
+use common::{OTHERS, REST, SKELETON, scenes};
 use jaspe_scene::description::{Geometry, VertexData};
 use jaspe_scene::{Diagnostics, DiskLoader, Loader, MemoryLoader, Scene, Severity, parse};
 
@@ -62,14 +62,14 @@ impl Random {
 #[test]
 fn a_scene_may_end_anywhere() {
     let mut errors = 0;
-    for text in [SKELETON, OTHERS] {
+    for text in [SKELETON, OTHERS, REST] {
         for end in 0..text.len() {
             let (_, diagnostics) = check(&format!("cut at {end}"), &text.as_bytes()[..end], &MemoryLoader::default());
             errors += usize::from(diagnostics.has_errors());
         }
         assert!(!check("whole", text.as_bytes(), &MemoryLoader::default()).1.has_errors());
     }
-    let all = SKELETON.len() + OTHERS.len();
+    let all = SKELETON.len() + OTHERS.len() + REST.len();
     assert!(errors * 10 > all * 9, "only {errors} of {all} cut scenes have errors");
 }
 
@@ -118,7 +118,7 @@ fn mutate(text: &[u8], random: &mut Random) -> Vec<u8> {
 
 #[test]
 fn mutated_scenes_are_survived() {
-    let mut bases: Vec<Vec<u8>> = vec![SKELETON.into(), OTHERS.into()];
+    let mut bases: Vec<Vec<u8>> = vec![SKELETON.into(), OTHERS.into(), REST.into()];
     for folder in ["tests/diagnostics", "scenes", "../shared/scenes"] {
         bases.extend(scenes(folder).iter().filter_map(|path| fs::read(path).ok()));
     }
@@ -193,6 +193,26 @@ fn counts_reserve_no_more_than_the_file_can_hold() {
         "background { color { \"spectrum 400 700\" 2000000000 1 1 } }",
         "trace-depths { diff 99999999999999999999 }",
         "image { resolution 99999999999 1 aa x 1 }",
+        "object { shader a type teapot subdivs 99999 }",
+        "object { shader a type gumbo subdivs 9999999999 }",
+        "object { shader a type teapot subdivs 0 }",
+        "object { shader a type bezier-mesh n 60000 60000 points 0 0 0 }",
+        "object { shader a type bezier-mesh n 4 4 points 0 0 0 }",
+        "object { shader a type bezier-mesh points 0 0 0 }",
+        "object { shader a type sphereflake level 99999999999999999999 }",
+        "object { shader a type julia iterations 2000000000 }",
+        "object { shader a type hair segments 2000000000 width 1 points 3 0 0 0 }",
+        "object { shader a type hair segments 1 width 1 points 2000000000 0 0 0 }",
+        "object { shader a type hair segments 2 width 1 points 6 0 0 0 0 0 1 }",
+        "object { shader a type particles points 2000000000 0 0 0 radius 1 }",
+        "object { shader a type particles points 1 0 0 0 filename f radius 1 }",
+        "object { shader a type particles points 1 0 0 0 num -1 radius 1 }",
+        "light { type meshlight emit 1 1 1 points 2000000000 0 0 0 triangles 1 0 0 0 }",
+        "light { type meshlight emit 1 1 1 points 1 0 0 0 triangles 1 0 0 1 }",
+        "light { type mesh emit 1 1 1 2000000000 2000000000 v 0 0 0 0 0 0 0 0 }",
+        "gi { type path samples 99999999999999999999 }",
+        "shader { name a type ward diff 1 1 1 spec 1 1 1 rough 0 1 }",
+        "light { type sunsky up 0 0 0 east 0 1 0 sundir 1 1 1 turbidity 4 }",
     ] {
         has_errors(text, text);
     }
@@ -215,6 +235,15 @@ fn numbers_that_are_none_are_refused_everywhere() {
             "object { shader a transform { translate 0 0 X } type sphere }",
             "object { shader a type generic-mesh points 1 0 X 0 triangles 0 normals none uvs none }",
             "object { shader a type mesh 1 0 v 0 0 0 0 0 X 0 0 }",
+            "object { shader a type torus r X 1 }",
+            "object { shader a type julia q 0 0 X 0 }",
+            "object { shader a type particles points 1 0 X 0 radius 1 }",
+            "light { type spherical color 1 1 1 radiance X center 0 0 0 radius 1 samples 1 }",
+            "light { type sunsky up 0 0 1 east 0 1 0 sundir 1 X 1 turbidity 4 }",
+            "gi { type irr-cache samples 1 tolerance X spacing 1 2 }",
+            "modifier { name a type bump texture b scale X }",
+            "shader { name a type shiny diff 1 1 1 refl X }",
+            "texture { name a type wood scale X }",
         ] {
             // Transforms are read in double precision, where 1e39 is a number like any other.
             if !(number == "1e39" && block.contains("translate")) {

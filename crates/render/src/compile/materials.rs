@@ -95,7 +95,7 @@ fn material(shader: &Shader, dialect: Dialect, pictures: &mut Pictures<'_>, diag
                 }
             }
         }
-        ShaderKind::Unsupported => (Albedo::Color(Vec3::splat(0.5)), Response::Matte),
+        _ => (Albedo::Color(Vec3::splat(0.5)), Response::Matte),
     };
     Material { albedo, response }
 }

@@ -3,6 +3,7 @@
 
 mod materials;
 mod objects;
+mod unsupported;
 
 use glam::Vec3;
 use jaspe_scene::description::{Camera as CameraDescription, Filter, Lens, LightKind, View};
@@ -107,6 +108,7 @@ impl CompiledScene {
 pub fn compile(scene: &Scene, loader: &dyn Loader, options: &CompileOptions) -> Compilation {
     let mut diagnostics = Diagnostics::default();
     let dialect = options.dialect.or(scene.dialect.map(|dialect| dialect.value)).unwrap_or_default();
+    unsupported::report(scene, &mut diagnostics);
     let (materials, names) = materials::compile(scene, dialect, loader, options.look, &mut diagnostics);
     let planned = objects::compile(scene, dialect, &names, &mut diagnostics);
     let Some(camera) = scene.cameras.last() else {
@@ -191,6 +193,7 @@ fn sunflow_light(kind: &LightKind) -> Option<Light> {
             let irradiance = Vec3::from_array(emit.linear()) * *intensity;
             Some(Light::Directional { source, direction, radius: *radius, irradiance })
         }
+        _ => None,
     }
 }
 
@@ -236,7 +239,7 @@ fn report(
             range: *power,
         }),
         // The original skips every other light.
-        LightKind::Directional { .. } => None,
+        _ => None,
     });
     let mut rules = Report { camera, lights: lights.collect(), plane_normals, plane_axes: Vec::new() };
     rules.fix_plane_axes(geometry, size);

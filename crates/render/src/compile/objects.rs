@@ -75,6 +75,7 @@ fn add(plan: &mut Plan, object: &Object, places: &[Placement], dialect: Dialect,
         }
         Written::Mesh(mesh) => plan.mesh(mesh_shape(mesh, dialect), places),
         Written::Box { corners } => plan.mesh(box_shape(*corners), places),
+        _ => {}
     }
 }
 

@@ -17,6 +17,24 @@ pub struct Image {
     pub filter: Option<Spanned<Filter>>,
     /// Whether sample positions are random within their cells (default false).
     pub jitter: Option<Spanned<bool>>,
+    /// How samples are placed (default `bucket`).
+    pub sampler: Option<Spanned<Sampler>>,
+    /// Whether `multipass` may share the shading of near points (default false).
+    pub cache: Option<Spanned<bool>>,
+    /// `bucket SIZE ORDER`: the size in pixels of the squares in which Sunflow renders, from 16 to 512.
+    pub bucket: Option<Spanned<u32>>,
+}
+
+/// How samples are placed in the picture (format reference, §3.3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Sampler {
+    /// Adaptive, and filtered by `filter`.
+    #[default]
+    Bucket,
+    /// One sample for each pixel, at once (`fast`, `ipr`).
+    Fast,
+    /// `samples` samples (16 where they are not given) spread by a cubic B-spline; `aa` and `filter` mean nothing.
+    Multipass,
 }
 
 /// Reconstruction filters, by their names in the format.

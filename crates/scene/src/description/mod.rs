@@ -5,18 +5,24 @@
 mod camera;
 mod cie;
 mod color;
+mod gi;
 mod image;
 mod light;
+mod modifier;
 mod object;
 mod shader;
 mod transform;
 
 pub use camera::{Camera, Lens, View};
 pub use color::{Color, ColorSpec};
-pub use image::{Filter, Image};
-pub use light::{Light, LightKind};
-pub use object::{Geometry, Instance, Mesh, Object, Plane, VertexData};
-pub use shader::{ColorOrTexture, Setting, SettingValue, Shader, ShaderKind};
+pub use gi::{Caustics, Gi, GiKind, GlobalPhotons, PhotonMap};
+pub use image::{Filter, Image, Sampler};
+pub use light::{CornellBox, Ground, Light, LightKind, Triangles};
+pub use modifier::{Modifier, ModifierKind, Texture};
+pub use object::{
+    BezierNet, ByteOrder, Geometry, Hair, Instance, Mesh, Object, Plane, PointSource, Tessellation, VertexData,
+};
+pub use shader::{Blend, ColorOrTexture, Setting, SettingValue, Shader, ShaderKind};
 pub use transform::{Matrix, Op, Transform, TransformKind};
 
 use std::path::PathBuf;
@@ -49,6 +55,10 @@ pub struct Scene {
     pub background: Option<Background>,
     /// All `trace-depths` blocks, merged.
     pub trace_depths: TraceDepths,
+    /// The last `gi` block, unless it says `none`.
+    pub gi: Option<Gi>,
+    /// The last `photons` block, unless its map is `none`.
+    pub caustics: Option<Caustics>,
     /// In order of appearance; the last one is used.
     pub cameras: Vec<Camera>,
     /// In order of appearance.
@@ -56,13 +66,34 @@ pub struct Scene {
     /// In order of appearance; the first of a name counts.
     pub shaders: Vec<Shader>,
     /// In order of appearance; the first of a name counts.
+    pub textures: Vec<Texture>,
+    /// In order of appearance; the first of a name counts.
+    pub modifiers: Vec<Modifier>,
+    /// In order of appearance; the first of a name counts.
     pub objects: Vec<Object>,
     /// In order of appearance.
     pub instances: Vec<Instance>,
     /// The line `override NAME BOOL`: this shader replaces every other.
     pub override_shader: Option<Name>,
+    /// Whether photons are scattered by the replacement too.
+    pub override_photons: bool,
+    /// All `include` lines that were followed, in order of appearance.
+    pub includes: Vec<Include>,
+    /// Folders in which included files, meshes and points are looked for, in this order.
+    pub include_folders: Vec<PathBuf>,
     /// Folders in which textures are looked for, in this order.
     pub texture_folders: Vec<PathBuf>,
+}
+
+/// A line `include FILE`.
+#[derive(Debug, Clone)]
+pub struct Include {
+    /// The file name as written.
+    pub name: Name,
+    /// Which of [`Scene::sources`] it is.
+    pub file: u32,
+    /// The line.
+    pub span: Span,
 }
 
 /// A uniform backdrop, seen by camera rays only.

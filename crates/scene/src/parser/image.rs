@@ -3,9 +3,8 @@
 use std::fmt::Display;
 
 use super::block::{Grammar, Key};
-use super::value::shorten;
 use super::{Parsed, Parser};
-use crate::description::{Background, Color};
+use crate::description::{Background, Color, Sampler};
 use crate::diagnostic::Diagnostic;
 use crate::lexer::Token;
 use crate::source::{Span, Spanned};
@@ -42,22 +41,22 @@ const IMAGE: &[Key<()>] = &[
         p.scene.image.jitter = Some(p.boolean()?);
         Ok(())
     }),
-    // What follows says how Sunflow works, not what the picture looks like.
-    Key::new("sampler", "sampler bucket", sampler),
+    Key::new("sampler", "sampler bucket", |p, (), _| {
+        p.scene.image.sampler = Some(p.choice("a sampler", SAMPLERS)?);
+        Ok(())
+    }),
+    Key::new("cache", "cache false", |p, (), _| {
+        p.scene.image.cache = Some(p.boolean()?);
+        Ok(())
+    }),
+    // Sunflow: read and without effect.
     Key::new("show-aa", "show-aa false", |p, (), _| p.boolean().map(drop)),
-    Key::new("cache", "cache false", |p, (), _| p.boolean().map(drop)),
     Key::new("output", "output picture.png", |p, (), _| p.word("a file name").map(drop)),
 ];
 
-/// The adaptive sampler that is ours too is called `bucket`.
-fn sampler(parser: &mut Parser<'_>, (): &mut (), _: Span) -> Parsed<()> {
-    let sampler = parser.word("a sampler")?;
-    if sampler.value != "bucket" {
-        let message = format!("skipped: sampler `{}` is not supported yet", shorten(&sampler.value));
-        parser.diagnostics.push(Diagnostic::warning(sampler.span, message));
-    }
-    Ok(())
-}
+/// Samplers by their names in the format.
+const SAMPLERS: &[(&str, Sampler)] =
+    &[("bucket", Sampler::Bucket), ("ipr", Sampler::Fast), ("fast", Sampler::Fast), ("multipass", Sampler::Multipass)];
 
 pub(super) fn image(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     parser.open("image")?;
@@ -122,7 +121,13 @@ impl Parser<'_> {
     }
 
     /// As in Sunflow, brought into its range, with a warning.
-    fn clamped<T: PartialOrd + Copy + Display>(&mut self, what: &str, value: Spanned<T>, min: T, max: T) -> T {
+    pub(super) fn clamped<T: PartialOrd + Copy + Display>(
+        &mut self,
+        what: &str,
+        value: Spanned<T>,
+        min: T,
+        max: T,
+    ) -> T {
         let nearest = match value.value {
             low if low < min => min,
             high if high > max => max,
@@ -138,5 +143,5 @@ impl Parser<'_> {
 #[cfg(test)]
 pub(super) fn words() -> impl Iterator<Item = &'static str> {
     let keys = IMAGE.iter().chain(TRACE_DEPTHS).map(|key| key.name);
-    keys.chain(BACKGROUND.iter().map(|key| key.name))
+    keys.chain(BACKGROUND.iter().map(|key| key.name)).chain(SAMPLERS.iter().map(|(name, _)| *name))
 }

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use super::{Context, Failed, Parsed, Parser, unreadable};
-use crate::description::Name;
+use crate::description::{Include, Name};
 use crate::diagnostic::Diagnostic;
 use crate::lexer::{Lexer, Syntax, Token};
 use crate::source::Span;
@@ -19,7 +19,6 @@ const MAX_FILES: usize = 1000;
 /// Files that are open or were read, and where others are looked for.
 #[derive(Debug, Default)]
 pub(super) struct Files {
-    folders: Vec<PathBuf>,
     /// The files being read, the main one first, and the statements that include them.
     open: Vec<(PathBuf, Option<Span>)>,
     loaded: HashMap<PathBuf, Arc<[u8]>>,
@@ -54,18 +53,19 @@ impl Parser<'_> {
             std::mem::replace(&mut self.file, index),
             std::mem::replace(&mut self.lexer, lexer),
             std::mem::take(&mut self.loose),
+            std::mem::replace(&mut self.direct_samples, 1),
         );
         let statements = self.statements();
         let found = std::mem::replace(&mut self.loose, outer.3);
         self.report_loose(found);
-        (self.bytes, self.file, self.lexer) = (outer.0, outer.1, outer.2);
+        (self.bytes, self.file, self.lexer, self.direct_samples) = (outer.0, outer.1, outer.2, outer.4);
         self.files.open.pop();
         Some(statements)
     }
 
     /// Sunflow: the folder of every file is searched for includes and textures from then on.
     fn search_in(&mut self, folder: &Path) {
-        for folders in [&mut self.files.folders, &mut self.scene.texture_folders] {
+        for folders in [&mut self.scene.include_folders, &mut self.scene.texture_folders] {
             if !folders.iter().any(|known| known == folder) {
                 folders.push(folder.to_owned());
             }
@@ -86,7 +86,8 @@ impl Parser<'_> {
         let folders: Vec<PathBuf> = if file.is_absolute() {
             vec![here]
         } else {
-            self.files.folders.iter().cloned().chain((!self.files.folders.contains(&here)).then_some(here)).collect()
+            let folders = &self.scene.include_folders;
+            folders.iter().cloned().chain((!folders.contains(&here)).then_some(here)).collect()
         };
         for folder in &folders {
             let path = folder.join(file);
@@ -129,7 +130,7 @@ impl Parser<'_> {
 }
 
 /// `include FILE`: reads another file as if it stood here. An error in it does not end the including file.
-pub(super) fn include(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
+pub(super) fn include(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     let name = parser.word("a file name")?;
     parser.failed_at = name.span.end;
     let extension = Path::new(&name.value).extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
@@ -162,6 +163,8 @@ pub(super) fn include(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
         parser.diagnostics.push(diagnostic);
         return Ok(());
     }
+    let file = parser.scene.sources.iter().count() as u32;
+    parser.scene.includes.push(Include { span: parser.span(head).to(name.span), name: name.clone(), file });
     parser.file(&path, bytes, Some(name.span));
     parser.context = Context::default();
     Ok(())
@@ -171,8 +174,8 @@ pub(super) fn include(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
 pub(super) fn include_path(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
     let name = parser.word("a folder")?;
     let folder = parser.folder(&name);
-    if !parser.files.folders.contains(&folder) {
-        parser.files.folders.push(folder);
+    if !parser.scene.include_folders.contains(&folder) {
+        parser.scene.include_folders.push(folder);
     }
     Ok(())
 }

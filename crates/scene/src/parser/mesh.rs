@@ -7,7 +7,7 @@ use super::block::{Key, Outcome, Required};
 use super::loose::Loose;
 use super::object::Draft;
 use super::{Context, Failed, Parsed, Parser};
-use crate::description::{Geometry, Mesh, VertexData};
+use crate::description::{Geometry, Mesh, Triangles, VertexData};
 use crate::diagnostic::Diagnostic;
 use crate::lexer::{Lexer, Token};
 use crate::number;
@@ -59,20 +59,8 @@ impl MeshDraft {
 
 /// The keywords of `generic-mesh`.
 pub(super) const KEYS: &[Key<Draft>] = &[
-    Key::new("points", "points 3 0 0 0 1 0 0 0 1 0", |p, d, key| {
-        let count = p.count()?;
-        let list = p.list(key, count, number::float::<f32>)?;
-        p.check_count(&list, count)?;
-        d.mesh.points = Some(list);
-        Ok(())
-    }),
-    Key::new("triangles", "triangles 1 0 1 2", |p, d, key| {
-        let count = p.count()?;
-        let list = p.list(key, count, number::index)?;
-        p.check_count(&list, count)?;
-        d.mesh.triangles = Some(list);
-        Ok(())
-    }),
+    Key::new("points", "points 3 0 0 0 1 0 0 0 1 0", |p, d, key| p.mesh_points(key, &mut d.mesh)),
+    Key::new("triangles", "triangles 1 0 1 2", |p, d, key| p.mesh_triangles(key, &mut d.mesh)),
     Key::new("normals", "normals none", |p, d, key| {
         d.mesh.normals = p.attribute(key, &d.mesh)?;
         Ok(())
@@ -110,9 +98,48 @@ impl Number for u32 {
     }
 }
 
+/// What every mesh of the new form needs.
+pub(super) const POINTS_REQUIRED: Required = (&["points"], "points 3 0 0 0 1 0 0 0 1 0");
+pub(super) const TRIANGLES_REQUIRED: Required = (&["triangles"], "triangles 1 0 1 2");
+
 impl Parser<'_> {
+    /// The value of `points`.
+    pub(super) fn mesh_points(&mut self, key: Span, mesh: &mut MeshDraft) -> Parsed<()> {
+        let count = self.count()?;
+        let list = self.list(key, count, number::float::<f32>)?;
+        self.check_count(&list, count)?;
+        mesh.points = Some(list);
+        Ok(())
+    }
+
+    /// The value of `triangles`.
+    pub(super) fn mesh_triangles(&mut self, key: Span, mesh: &mut MeshDraft) -> Parsed<()> {
+        let count = self.count()?;
+        let list = self.list(key, count, number::index)?;
+        self.check_count(&list, count)?;
+        mesh.triangles = Some(list);
+        Ok(())
+    }
+
+    /// `count` points, as many as were announced.
+    pub(super) fn point_list(&mut self, key: Span, count: usize) -> Parsed<Vec<[f32; 3]>> {
+        let list = self.list(key, count, number::float::<f32>)?;
+        self.check_count(&list, count)?;
+        Ok(list.values)
+    }
+
+    /// `count` numbers, three of which make a point.
+    pub(super) fn flat_point_list(&mut self, key: Span, count: usize) -> Parsed<Vec<[f32; 3]>> {
+        let list = self.list::<f32, 3>(key, count / 3, number::float::<f32>)?;
+        let found = list.values.len() * 3 + list.rest;
+        if found != count {
+            return Err(self.wrong_count(&list, count, found));
+        }
+        Ok(list.values)
+    }
+
     /// The announced length of a list.
-    fn count(&mut self) -> Parsed<usize> {
+    pub(super) fn count(&mut self) -> Parsed<usize> {
         let before = self.peek();
         match usize::try_from(self.int()?) {
             Ok(count) => Ok(count),
@@ -228,59 +255,9 @@ impl Parser<'_> {
     }
 }
 
-/// The numbers of the old meshes: `V T`, then V times `v x y z nx ny nz u v`, then T times `t a b c`.
-pub(super) fn legacy(parser: &mut Parser<'_>, draft: &mut Draft, key: Span) -> Parsed<()> {
-    parser.context = Context { name: "mesh", example: "" };
-    let (vertex_count, triangle_count) = (parser.count()?, parser.count()?);
-    let start = parser.lexer;
-    let fits = |count: usize, size: usize| count.min(start.remaining(&parser.bytes) / size);
-    let mut points = Vec::with_capacity(fits(vertex_count, 18));
-    let mut normals = Vec::with_capacity(fits(vertex_count, 18));
-    let mut uvs = Vec::with_capacity(fits(vertex_count, 18));
-    let mut triangles = Vec::with_capacity(fits(triangle_count, 8));
-    parser.context = Context { name: "v", example: "v 0 0 0 0 0 1 0 0" };
-    while parser.take("v").is_some() {
-        let [x, y, z, nx, ny, nz, u, v] = parser.numbers()?;
-        points.push([x, y, z]);
-        normals.push([nx, ny, nz]);
-        uvs.push([u, v]);
-    }
-    parser.context = Context { name: "t", example: "t 0 1 2" };
-    let triangles_start = parser.lexer;
-    while parser.take("t").is_some() {
-        let mut triangle = [0; 3];
-        for index in &mut triangle {
-            let found = parser.next();
-            match found.and_then(|token| number::index(token.bytes(&parser.bytes))) {
-                Some(value) => *index = value,
-                None => return Err(parser.expected("three indices from 0", found)),
-            }
-        }
-        triangles.push(triangle);
-    }
-    for (what, expected, found) in [("v", vertex_count, points.len()), ("t", triangle_count, triangles.len())] {
-        if expected != found {
-            let message = format!("the mesh announces {expected} lines of `{what}`, found {found}");
-            let diagnostic = Diagnostic::error(key, message);
-            parser.failed_at = parser.lexer.position() as u32;
-            parser.diagnostics.push(match parser.peek() {
-                Some(end) => diagnostic.label(parser.span(end), "the lines end here"),
-                None => diagnostic,
-            });
-            return Err(Failed);
-        }
-    }
-    draft.mesh.points = Some(List { values: points, rest: 0, start, key });
-    draft.mesh.triangles = Some(List { values: triangles, rest: 0, start: triangles_start, key });
-    draft.mesh.normals = Attribute::Vertex(List { values: normals, rest: 0, start, key });
-    draft.mesh.uvs = Attribute::Vertex(List { values: uvs, rest: 0, start, key });
-    Ok(())
-}
-
 /// The mesh of a `generic-mesh`.
 pub(super) fn generic(parser: &mut Parser<'_>, draft: &mut Draft, outcome: &Outcome, head: Span) -> Option<Geometry> {
-    let required: &[Required] = &[(&["points"], "points 3 0 0 0 1 0 0 0 1 0"), (&["triangles"], "triangles 1 0 1 2")];
-    parser.require("generic-mesh", outcome, head, required);
+    parser.require("generic-mesh", outcome, head, &[POINTS_REQUIRED, TRIANGLES_REQUIRED]);
     for (key, loose) in [("normals", Loose::MeshWithoutNormals), ("uvs", Loose::MeshWithoutUvs)] {
         if !outcome.has(key) {
             parser.loose(loose, head);
@@ -291,10 +268,8 @@ pub(super) fn generic(parser: &mut Parser<'_>, draft: &mut Draft, outcome: &Outc
 
 /// The mesh of a `mesh`.
 pub(super) fn smooth(parser: &mut Parser<'_>, draft: &mut Draft, outcome: &Outcome, head: Span) -> Option<Geometry> {
-    if draft.mesh.points.is_none() && !outcome.failed {
-        let message = "the mesh lacks its numbers";
-        let hint = "write `V T`, V lines `v x y z nx ny nz u v` and T lines `t a b c`";
-        parser.diagnostics.push(Diagnostic::error(head, message).hint(hint));
+    if !outcome.failed {
+        parser.require_legacy_lists(&draft.mesh, head);
     }
     build(parser, draft)
 }
@@ -325,6 +300,71 @@ fn build(parser: &mut Parser<'_>, draft: &mut Draft) -> Option<Geometry> {
 }
 
 impl Parser<'_> {
+    /// The numbers of the old meshes: `V T`, then V times `v x y z nx ny nz u v`, then T times `t a b c`.
+    pub(super) fn legacy_lists(&mut self, mesh: &mut MeshDraft, key: Span) -> Parsed<()> {
+        self.context = Context { name: "mesh", example: "" };
+        let (vertex_count, triangle_count) = (self.count()?, self.count()?);
+        let start = self.lexer;
+        let fits = |count: usize, size: usize| count.min(start.remaining(&self.bytes) / size);
+        let mut points = Vec::with_capacity(fits(vertex_count, 18));
+        let mut normals = Vec::with_capacity(fits(vertex_count, 18));
+        let mut uvs = Vec::with_capacity(fits(vertex_count, 18));
+        let mut triangles = Vec::with_capacity(fits(triangle_count, 8));
+        self.context = Context { name: "v", example: "v 0 0 0 0 0 1 0 0" };
+        while self.take("v").is_some() {
+            let [x, y, z, nx, ny, nz, u, v] = self.numbers()?;
+            points.push([x, y, z]);
+            normals.push([nx, ny, nz]);
+            uvs.push([u, v]);
+        }
+        self.context = Context { name: "t", example: "t 0 1 2" };
+        let triangles_start = self.lexer;
+        while self.take("t").is_some() {
+            let mut triangle = [0; 3];
+            for index in &mut triangle {
+                let found = self.next();
+                match found.and_then(|token| number::index(token.bytes(&self.bytes))) {
+                    Some(value) => *index = value,
+                    None => return Err(self.expected("three indices from 0", found)),
+                }
+            }
+            triangles.push(triangle);
+        }
+        for (what, expected, found) in [("v", vertex_count, points.len()), ("t", triangle_count, triangles.len())] {
+            if expected != found {
+                let message = format!("the mesh announces {expected} lines of `{what}`, found {found}");
+                let diagnostic = Diagnostic::error(key, message);
+                self.failed_at = self.lexer.position() as u32;
+                self.diagnostics.push(match self.peek() {
+                    Some(end) => diagnostic.label(self.span(end), "the lines end here"),
+                    None => diagnostic,
+                });
+                return Err(Failed);
+            }
+        }
+        mesh.points = Some(List { values: points, rest: 0, start, key });
+        mesh.triangles = Some(List { values: triangles, rest: 0, start: triangles_start, key });
+        mesh.normals = Attribute::Vertex(List { values: normals, rest: 0, start, key });
+        mesh.uvs = Attribute::Vertex(List { values: uvs, rest: 0, start, key });
+        Ok(())
+    }
+
+    /// Reports an old mesh without numbers.
+    pub(super) fn require_legacy_lists(&mut self, mesh: &MeshDraft, head: Span) {
+        if mesh.points.is_none() {
+            let message = "the mesh lacks its numbers";
+            let hint = "write `V T`, V lines `v x y z nx ny nz u v` and T lines `t a b c`";
+            self.diagnostics.push(Diagnostic::error(head, message).hint(hint));
+        }
+    }
+
+    /// The triangles of a mesh, checked, without anything that goes with them.
+    pub(super) fn bare_triangles(&mut self, mesh: MeshDraft) -> Option<Triangles> {
+        let (points, triangles) = (mesh.points?, mesh.triangles?);
+        let in_range = self.check_indices(&triangles, points.values.len());
+        in_range.then_some(Triangles { points: points.values, triangles: triangles.values })
+    }
+
     /// Reports indices that no point answers to: the first one, and how many more there are.
     fn check_indices(&mut self, triangles: &List<[u32; 3]>, points: usize) -> bool {
         let is_bad = |index: &u32| *index as usize >= points;

@@ -8,24 +8,28 @@
 mod block;
 mod camera;
 mod color;
+mod gi;
 mod image;
 mod include;
 mod light;
 mod loose;
 mod mesh;
+mod modifier;
 mod object;
 mod set;
 mod shader;
+mod shape;
 mod statement;
 mod transform;
 mod value;
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::description::Scene;
+use crate::description::{Name, Scene};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::lexer::{Lexer, Syntax, Token};
 use crate::source::{Loader, Span};
@@ -79,6 +83,16 @@ struct Context {
     example: &'static str,
 }
 
+/// Things that may share a name without being confused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Namespace {
+    Shader,
+    Texture,
+    Modifier,
+    /// Objects and instances.
+    Object,
+}
+
 /// The state of reading one scene: a cursor in the current file and everything found so far.
 pub(crate) struct Parser<'l> {
     loader: &'l dyn Loader,
@@ -93,8 +107,12 @@ pub(crate) struct Parser<'l> {
     failed_at: u32,
     loose: loose::Found,
     files: include::Files,
-    shader_names: HashMap<String, Span>,
-    object_names: HashMap<String, Span>,
+    /// Where names were first declared.
+    names: HashMap<(Namespace, String), Span>,
+    /// Triangles, spheres and the like that shapes of few words ask for.
+    generated: u64,
+    /// Sunflow: samples of the lights of this file that do not say how many.
+    direct_samples: u32,
     /// Objects of a type that is not supported: instances of them are dropped too.
     dropped_objects: HashMap<String, Span>,
 }
@@ -113,9 +131,31 @@ impl<'l> Parser<'l> {
             failed_at: 0,
             loose: loose::Found::default(),
             files: include::Files::default(),
-            shader_names: HashMap::new(),
-            object_names: HashMap::new(),
+            names: HashMap::new(),
+            generated: 0,
+            direct_samples: 1,
             dropped_objects: HashMap::new(),
+        }
+    }
+
+    /// Notes a name, and warns if it is taken.
+    fn declare(&mut self, namespace: Namespace, name: &Name) {
+        match self.names.entry((namespace, name.value.clone())) {
+            Entry::Vacant(entry) => {
+                entry.insert(name.span);
+            }
+            Entry::Occupied(first) => {
+                let what = match namespace {
+                    Namespace::Shader => "a shader",
+                    Namespace::Texture => "a texture",
+                    Namespace::Modifier => "a modifier",
+                    Namespace::Object => "an object or instance",
+                };
+                let message =
+                    format!("there is already {what} `{}`; names find the first one", value::shorten(&name.value));
+                let diagnostic = Diagnostic::warning(name.span, message);
+                self.diagnostics.push(diagnostic.label(*first.get(), "first declared here"));
+            }
         }
     }
 

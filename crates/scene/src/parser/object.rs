@@ -3,7 +3,10 @@
 use super::block::{Grammar, Key, Outcome, Reader, Required};
 use super::loose::Loose;
 use super::mesh::{self, MeshDraft};
-use super::{Parsed, Parser};
+use super::shader::java;
+use super::shape::{self, ShapeDraft};
+use super::value::unknown_word;
+use super::{Namespace, Parsed, Parser};
 use crate::description::{Geometry, Instance, Name, Object, Plane, Transform};
 use crate::diagnostic::Diagnostic;
 use crate::lexer::Token;
@@ -16,6 +19,7 @@ pub(super) struct Draft {
     has_type: bool,
     hidden: bool,
     pub shaders: Vec<Name>,
+    modifiers: Vec<Name>,
     transform: Option<Transform>,
     center: Option<[f32; 3]>,
     radius: Option<f32>,
@@ -23,14 +27,15 @@ pub(super) struct Draft {
     normal: Option<[f32; 3]>,
     corners: Option<[[f32; 3]; 2]>,
     pub mesh: MeshDraft,
+    pub shape: ShapeDraft,
 }
 
 /// A shape: its own keywords beside those of every object, and what they mean.
-struct ObjectType {
-    name: &'static str,
-    keys: &'static [Key<Draft>],
-    bare: Option<Reader<Draft>>,
-    build: fn(&mut Parser<'_>, &mut Draft, &Outcome, Span) -> Option<Geometry>,
+pub(super) struct ObjectType {
+    pub name: &'static str,
+    pub keys: &'static [Key<Draft>],
+    pub bare: Option<Reader<Draft>>,
+    pub build: fn(&mut Parser<'_>, &mut Draft, &Outcome, Span) -> Option<Geometry>,
 }
 
 const HEAD: [Key<Draft>; 9] = [
@@ -59,14 +64,15 @@ const HEAD: [Key<Draft>; 9] = [
         d.shaders = p.names("the name of a shader")?;
         Ok(())
     }),
-    // Modifiers are reported where they are declared.
     Key::new("modifier", "modifier bumps", |p, d, span| {
         d.head(p, span);
-        p.word("the name of a modifier").map(drop)
+        d.modifiers = vec![p.word("the name of a modifier")?];
+        Ok(())
     }),
     Key::new("modifiers", "modifiers 2 bumps None", |p, d, span| {
         d.head(p, span);
-        p.names("the name of a modifier").map(drop)
+        d.modifiers = p.names("the name of a modifier")?;
+        Ok(())
     }),
     Key::new("transform", "transform { translate 0 0 1 }", |p, d, span| {
         d.head(p, span);
@@ -76,7 +82,7 @@ const HEAD: [Key<Draft>; 9] = [
     Key::new("accel", "accel bih", |p, _, _| p.word("the name of an acceleration structure").map(drop)),
 ];
 
-const TYPES: &[ObjectType] = &[
+const PLAIN: &[ObjectType] = &[
     ObjectType {
         name: "sphere",
         keys: &[
@@ -114,26 +120,21 @@ const TYPES: &[ObjectType] = &[
         build: |_, d, _, _| Some(Geometry::Box { corners: d.corners.unwrap_or([[-0.5; 3], [0.5; 3]]) }),
     },
     ObjectType { name: "generic-mesh", keys: mesh::KEYS, bare: None, build: mesh::generic },
-    ObjectType { name: "mesh", keys: &[], bare: Some(mesh::legacy), build: mesh::smooth },
-    ObjectType { name: "flat-mesh", keys: &[], bare: Some(mesh::legacy), build: mesh::flat },
+    ObjectType { name: "mesh", keys: &[], bare: Some(legacy_mesh), build: mesh::smooth },
+    ObjectType { name: "flat-mesh", keys: &[], bare: Some(legacy_mesh), build: mesh::flat },
 ];
 
-/// Sunflow's other objects.
-const UNSUPPORTED: &[&str] = &[
-    "file-mesh",
-    "bezier-mesh",
-    "teapot",
-    "gumbo",
-    "torus",
-    "cylinder",
-    "banchoff",
-    "sphereflake",
-    "julia",
-    "hair",
-    "particles",
-    "dlasurface",
-    "janino-tesselatable",
-];
+fn legacy_mesh(parser: &mut Parser<'_>, draft: &mut Draft, key: Span) -> Parsed<()> {
+    parser.legacy_lists(&mut draft.mesh, key)
+}
+
+/// The object that is written in Java.
+const JAVA: &str = "janino-tesselatable";
+
+/// All types of objects.
+fn types() -> impl Iterator<Item = &'static ObjectType> + Clone {
+    PLAIN.iter().chain(shape::TYPES)
+}
 
 impl Draft {
     /// Notes a keyword that Sunflow wants before the type.
@@ -162,11 +163,12 @@ impl Parser<'_> {
 
 pub(super) fn object(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     parser.open("object")?;
-    let names = || TYPES.iter().map(|object| object.name);
+    let names = || types().map(|object| object.name);
     let outline = parser.outline();
-    let Some(object) = TYPES.iter().find(|o| outline.kind.as_ref().is_some_and(|kind| kind.value == o.name)) else {
+    let Some(object) = types().find(|o| outline.kind.as_ref().is_some_and(|kind| kind.value == o.name)) else {
         let remark = match outline.kind {
-            Some(kind) => parser.other_type(head, "object", &kind, names(), UNSUPPORTED),
+            Some(kind) if kind.value == JAVA => java(parser.span(head), "the object", "it is left out"),
+            Some(kind) => unknown_word("object type", &kind, names()),
             None => parser.missing_type(head, "object", names()),
         };
         if let Some(name) = parser.skip_block(head, Some(remark)).name {
@@ -197,31 +199,17 @@ impl Parser<'_> {
     fn add_object(&mut self, draft: Draft, geometry: Geometry, span: Span) {
         let visible = draft.is_visible();
         if let Some(name) = &draft.name {
-            self.declare_object(name);
+            self.declare(Namespace::Object, name);
         }
-        let Draft { name, shaders, transform, .. } = draft;
-        self.scene.objects.push(Object { name, shaders, transform, geometry, visible, span });
-    }
-
-    /// Objects and instances share their names.
-    fn declare_object(&mut self, name: &Name) {
-        match self.object_names.get(&name.value) {
-            Some(first) => {
-                let first = *first;
-                self.duplicate("an object or instance", name, first);
-            }
-            None => {
-                self.object_names.insert(name.value.clone(), name.span);
-            }
-        }
+        let Draft { name, shaders, modifiers, transform, .. } = draft;
+        self.scene.objects.push(Object { name, shaders, modifiers, transform, geometry, visible, span });
     }
 
     /// An instance of an object that was passed over has nothing to show, and the warning has been given.
     pub(super) fn drop_instances_of_dropped_objects(&mut self) {
-        let (dropped, kept) = (&self.dropped_objects, &self.object_names);
-        self.scene.instances.retain(|instance| {
-            let geometry = &instance.geometry.value;
-            !dropped.contains_key(geometry) || kept.contains_key(geometry)
+        let (dropped, kept) = (&self.dropped_objects, &self.names);
+        self.scene.instances.retain(|Instance { geometry, .. }| {
+            !dropped.contains_key(&geometry.value) || kept.contains_key(&(Namespace::Object, geometry.value.clone()))
         });
     }
 }
@@ -278,6 +266,7 @@ struct InstanceDraft {
     name: Option<Name>,
     geometry: Option<Name>,
     shaders: Vec<Name>,
+    modifiers: Vec<Name>,
     transform: Option<Transform>,
 }
 
@@ -302,8 +291,14 @@ const INSTANCE: &[Key<InstanceDraft>] = &[
         d.shaders = p.names("the name of a shader")?;
         Ok(())
     }),
-    Key::new("modifier", "modifier bumps", |p, _, _| p.word("the name of a modifier").map(drop)),
-    Key::new("modifiers", "modifiers 2 bumps None", |p, _, _| p.names("the name of a modifier").map(drop)),
+    Key::new("modifier", "modifier bumps", |p, d, _| {
+        d.modifiers = vec![p.word("the name of a modifier")?];
+        Ok(())
+    }),
+    Key::new("modifiers", "modifiers 2 bumps None", |p, d, _| {
+        d.modifiers = p.names("the name of a modifier")?;
+        Ok(())
+    }),
 ];
 
 pub(super) fn instance(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
@@ -315,11 +310,12 @@ pub(super) fn instance(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
         &[(&["geometry"], "geometry NAME"), (&["transform"], "transform { }"), (&["shader", "shaders"], "shader NAME")];
     parser.require("instance", &outcome, place, required);
     if let Some(name) = &draft.name {
-        parser.declare_object(name);
+        parser.declare(Namespace::Object, name);
     }
-    let InstanceDraft { name, geometry, shaders, transform } = draft;
+    let InstanceDraft { name, geometry, shaders, modifiers, transform } = draft;
     if let Some(geometry) = geometry {
-        parser.scene.instances.push(Instance { name, geometry, shaders, transform, span: outcome.span });
+        let span = outcome.span;
+        parser.scene.instances.push(Instance { name, geometry, shaders, modifiers, transform, span });
     }
     Ok(())
 }
@@ -327,7 +323,7 @@ pub(super) fn instance(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
 /// All words of these blocks, for the test of the page on the format.
 #[cfg(test)]
 pub(super) fn words() -> impl Iterator<Item = &'static str> {
-    let keys = TYPES.iter().flat_map(|object| object.keys).chain(&HEAD).map(|key| key.name);
-    let types = TYPES.iter().map(|object| object.name).chain(UNSUPPORTED.iter().copied());
+    let keys = types().flat_map(|object| object.keys).chain(&HEAD).map(|key| key.name);
+    let types = types().map(|object| object.name).chain([JAVA]);
     keys.chain(types).chain(INSTANCE.iter().map(|key| key.name))
 }

@@ -110,6 +110,28 @@ fn open(kind: &ShaderKind) -> Option<(Type, Draft)> {
             };
             ("glass", draft)
         }
+        ShaderKind::Shiny { diffuse, reflection } => {
+            ("shiny", Draft { diffuse: Some(diffuse), reflection: Some(reflection), ..Draft::default() })
+        }
+        ShaderKind::Ward { diffuse, specular, roughness, samples } => {
+            let (diffuse, color, roughness) = (Some(diffuse), Some(specular), Some(roughness));
+            ("ward", Draft { diffuse, color, roughness, samples: Some(samples), ..Draft::default() })
+        }
+        ShaderKind::AmbientOcclusion { bright, dark, samples, distance } => {
+            let (diffuse, dark, distance) = (Some(bright), Some(dark), Some(distance));
+            ("amb-occ", Draft { diffuse, dark, distance, samples: Some(samples), ..Draft::default() })
+        }
+        ShaderKind::Uber { diffuse, specular, glossy, samples } => {
+            let (diffuse_layer, specular_layer) = (diffuse.into(), specular.into());
+            let (glossy, samples) = (Some(glossy), Some(samples));
+            ("uber", Draft { diffuse_layer, specular_layer, glossy, samples, ..Draft::default() })
+        }
+        ShaderKind::Wireframe { line, fill, width } => {
+            ("wireframe", Draft { dark: Some(line), color: Some(fill), width: Some(width), ..Draft::default() })
+        }
+        kind @ (ShaderKind::ViewCaustics | ShaderKind::ViewIrradiance | ShaderKind::ViewGlobal | ShaderKind::Id) => {
+            (kind.keyword(), Draft::default())
+        }
         ShaderKind::Procedural { declaration, settings } => {
             (declaration.name, Draft { settings, ..Draft::procedural(declaration) })
         }

@@ -5,10 +5,9 @@ use jaspe_texture::declare::{Declaration, Kind};
 
 use super::block::{Grammar, Key, Required};
 use super::loose::Loose;
-
-use super::value::shorten;
-use super::{Context, Failed, Parsed, Parser};
-use crate::description::{Color, ColorOrTexture, Name, Setting, SettingValue, Shader, ShaderKind};
+use super::value::{put, unknown_word};
+use super::{Context, Failed, Namespace, Parsed, Parser};
+use crate::description::{Blend, Color, ColorOrTexture, Name, Setting, SettingValue, Shader, ShaderKind};
 use crate::diagnostic::Diagnostic;
 use crate::lexer::Token;
 use crate::source::{Span, Spanned};
@@ -26,6 +25,35 @@ pub(super) struct Draft {
     pub eta: Option<f32>,
     pub absorption_distance: Option<f32>,
     pub absorption_color: Option<Color>,
+    pub dark: Option<Color>,
+    pub distance: Option<f32>,
+    pub reflection: Option<f32>,
+    pub roughness: Option<[f32; 2]>,
+    pub diffuse_layer: Layer,
+    pub specular_layer: Layer,
+    pub glossy: Option<f32>,
+    pub width: Option<f32>,
+}
+
+/// A part of an `uber` shader as far as it was written.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Layer {
+    pub color: Option<Color>,
+    pub texture: Option<Name>,
+    pub blend: Option<f32>,
+}
+
+impl From<Blend> for Layer {
+    fn from(Blend { color, texture, blend }: Blend) -> Self {
+        Layer { color: Some(color), texture, blend: Some(blend) }
+    }
+}
+
+impl Layer {
+    fn build(self, default_blend: f32, span: Span) -> Blend {
+        let color = self.color.unwrap_or_else(|| Color::new_linear([0.5; 3], span));
+        Blend { color, texture: self.texture, blend: self.blend.unwrap_or(default_blend) }
+    }
 }
 
 /// A shader with a fixed set of keywords.
@@ -37,10 +65,7 @@ pub(super) struct ShaderType {
     pub build: fn(Draft, Span) -> Option<ShaderKind>,
 }
 
-const NAME: Key<Draft> = Key::new("name", "name red", |p, d, _| {
-    d.name = Some(p.word("a name")?);
-    Ok(())
-});
+const NAME: Key<Draft> = Key::new("name", "name red", |p, d, _| put(&mut d.name, p.word("a name")));
 
 const TYPE: Key<Draft> = Key::new("type", "type diffuse", |p, d, _| {
     let kind = p.word("a shader type")?;
@@ -55,18 +80,18 @@ const COLOR: Key<Draft> = Key::new("color", "color { \"sRGB nonlinear\" 1 0.5 0 
 const REFL: Key<Draft> = Key::new("refl", "refl { \"sRGB nonlinear\" 1 1 1 }", color);
 
 fn color(parser: &mut Parser<'_>, draft: &mut Draft, _: Span) -> Parsed<()> {
-    draft.color = Some(parser.color()?);
-    Ok(())
+    put(&mut draft.color, parser.color())
 }
 
-const DIFF: Key<Draft> = Key::new("diff", "diff { \"sRGB nonlinear\" 1 0.5 0 }", |p, d, _| {
-    d.diffuse = Some(ColorOrTexture::Color(p.color()?));
-    Ok(())
-});
+const DIFF: Key<Draft> = Key::new("diff", "diff { \"sRGB nonlinear\" 1 0.5 0 }", diffuse_color);
+const BRIGHT: Key<Draft> = Key::new("bright", "bright 1 1 1", diffuse_color);
+
+fn diffuse_color(parser: &mut Parser<'_>, draft: &mut Draft, _: Span) -> Parsed<()> {
+    put(&mut draft.diffuse, parser.color().map(ColorOrTexture::Color))
+}
 
 const TEXTURE: Key<Draft> = Key::new("texture", "texture \"wall.png\"", |p, d, _| {
-    d.diffuse = Some(ColorOrTexture::Texture(p.word("a file name")?));
-    Ok(())
+    put(&mut d.diffuse, p.word("a file name").map(ColorOrTexture::Texture))
 });
 
 const SPEC: Key<Draft> = Key::new("spec", "spec { \"sRGB nonlinear\" 1 1 1 } 50", |p, d, _| {
@@ -74,15 +99,10 @@ const SPEC: Key<Draft> = Key::new("spec", "spec { \"sRGB nonlinear\" 1 1 1 } 50"
     Ok(())
 });
 
-const SAMPLES: Key<Draft> = Key::new("samples", "samples 4", |p, d, _| {
-    d.samples = Some(u32::try_from(p.int()?.max(0)).unwrap_or(u32::MAX));
-    Ok(())
-});
-
-const ETA: Key<Draft> = Key::new("eta", "eta 1.5", |p, d, _| {
-    d.eta = Some(p.positive("`eta`")?);
-    Ok(())
-});
+const SAMPLES: Key<Draft> = Key::new("samples", "samples 4", |p, d, _| put(&mut d.samples, p.samples()));
+const ETA: Key<Draft> = Key::new("eta", "eta 1.5", |p, d, _| put(&mut d.eta, p.positive("`eta`")));
+const DARK: Key<Draft> = Key::new("dark", "dark 0 0 0", |p, d, _| put(&mut d.dark, p.color()));
+const DIST: Key<Draft> = Key::new("dist", "dist 10", |p, d, _| put(&mut d.distance, p.number()));
 
 fn absorption_distance(parser: &mut Parser<'_>, draft: &mut Draft, _: Span) -> Parsed<()> {
     draft.absorption_distance = Some(parser.number()?);
@@ -96,6 +116,19 @@ fn absorption_color(parser: &mut Parser<'_>, draft: &mut Draft, _: Span) -> Pars
         parser.loose(Loose::NumberAfterAbsorption, number.span);
     }
     Ok(())
+}
+
+/// A part from 0 to 1; as in Sunflow, brought there.
+fn part(parser: &mut Parser<'_>, slot: &mut Option<f32>) -> Parsed<()> {
+    let what = parser.context.name;
+    let part = parser.spanned(Parser::number::<f32>)?;
+    *slot = Some(parser.clamped(&format!("`{what}`"), part, 0.0, 1.0));
+    Ok(())
+}
+
+/// `refl` and `spec` of an `uber` shader mean the same.
+fn specular_color(parser: &mut Parser<'_>, draft: &mut Draft, _: Span) -> Parsed<()> {
+    put(&mut draft.specular_layer.color, parser.color())
 }
 
 const NAME_REQUIRED: Required = (&["name"], "name NAME");
@@ -153,34 +186,120 @@ const SHADERS: &[ShaderType] = &[
             })
         },
     },
+    ShaderType {
+        name: "shiny",
+        keys: &[NAME, TYPE, DIFF, TEXTURE, Key::new("refl", "refl 0.5", |p, d, _| put(&mut d.reflection, p.number()))],
+        required: &[DIFFUSE_REQUIRED, (&["refl"], "refl 0.5")],
+        build: |d, _| Some(ShaderKind::Shiny { diffuse: d.diffuse?, reflection: d.reflection? }),
+    },
+    ShaderType {
+        name: "ward",
+        keys: &[
+            NAME,
+            TYPE,
+            DIFF,
+            TEXTURE,
+            Key::new("spec", "spec 0.5 0.5 0.5", color),
+            Key::new("rough", "rough 0.2 0.1", |p, d, _| {
+                let along = p.positive("the first number of `rough`")?;
+                put(&mut d.roughness, p.positive("the second number of `rough`").map(|across| [along, across]))
+            }),
+            SAMPLES,
+        ],
+        required: &[DIFFUSE_REQUIRED, (&["spec"], "spec 0.5 0.5 0.5"), (&["rough"], "rough 0.2 0.1")],
+        build: |d, _| {
+            let (diffuse, specular, roughness) = (d.diffuse?, d.color?, d.roughness?);
+            Some(ShaderKind::Ward { diffuse, specular, roughness, samples: d.samples.unwrap_or(4) })
+        },
+    },
+    ShaderType { name: "amb-occ", keys: AMBIENT_OCCLUSION, required: &[], build: ambient_occlusion },
+    ShaderType { name: "amb-occ2", keys: AMBIENT_OCCLUSION, required: &[], build: ambient_occlusion },
+    ShaderType {
+        name: "uber",
+        keys: &[
+            NAME,
+            TYPE,
+            Key::new("diff", "diff 0.5 0.5 0.5", |p, d, _| put(&mut d.diffuse_layer.color, p.color())),
+            Key::new("diff.texture", "diff.texture \"wall.png\"", |p, d, _| {
+                put(&mut d.diffuse_layer.texture, p.word("a file name"))
+            }),
+            Key::new("diff.blend", "diff.blend 1", |p, d, _| part(p, &mut d.diffuse_layer.blend)),
+            Key::new("refl", "refl 0.5 0.5 0.5", specular_color),
+            Key::new("spec", "spec 0.5 0.5 0.5", specular_color),
+            // The old form of `diff.texture` and `diff.blend`.
+            Key::new("texture", "texture \"wall.png\" 1", |p, d, _| {
+                d.diffuse_layer.texture = Some(p.word("a file name")?);
+                part(p, &mut d.diffuse_layer.blend)
+            }),
+            Key::new("spec.texture", "spec.texture \"shine.png\"", |p, d, _| {
+                put(&mut d.specular_layer.texture, p.word("a file name"))
+            }),
+            Key::new("spec.blend", "spec.blend 1", |p, d, _| part(p, &mut d.specular_layer.blend)),
+            Key::new("glossy", "glossy 0.1", |p, d, _| part(p, &mut d.glossy)),
+            SAMPLES,
+        ],
+        required: &[],
+        build: |d, span| {
+            let diffuse = d.diffuse_layer.build(1.0, span);
+            // Sunflow: what is not said of the specular part is as for the diffuse one (R11).
+            let specular = d.specular_layer.build(diffuse.blend, span);
+            let (glossy, samples) = (d.glossy.unwrap_or(0.0), d.samples.unwrap_or(4));
+            Some(ShaderKind::Uber { diffuse, specular, glossy, samples })
+        },
+    },
+    ShaderType {
+        name: "wireframe",
+        keys: &[
+            NAME,
+            TYPE,
+            Key::new("line", "line 0 0 0", |p, d, _| put(&mut d.dark, p.color())),
+            Key::new("fill", "fill 1 1 1", color),
+            Key::new("width", "width 0.0004", |p, d, _| put(&mut d.width, p.positive("`width`"))),
+        ],
+        required: &[],
+        build: |d, span| {
+            Some(ShaderKind::Wireframe {
+                line: d.dark.unwrap_or_else(|| Color::new_linear([0.0; 3], span)),
+                fill: d.color.unwrap_or_else(|| Color::new_linear([1.0; 3], span)),
+                // Sunflow: WireframeShader.
+                width: d.width.unwrap_or(std::f32::consts::PI / 8192.0),
+            })
+        },
+    },
+    ShaderType { name: "view-caustics", keys: BARE, required: &[], build: |_, _| Some(ShaderKind::ViewCaustics) },
+    ShaderType { name: "view-irradiance", keys: BARE, required: &[], build: |_, _| Some(ShaderKind::ViewIrradiance) },
+    ShaderType { name: "view-global", keys: BARE, required: &[], build: |_, _| Some(ShaderKind::ViewGlobal) },
+    ShaderType { name: "id", keys: BARE, required: &[], build: |_, _| Some(ShaderKind::Id) },
 ];
 
-/// Sunflow's other shaders.
-const UNSUPPORTED: &[&str] = &[
-    "amb-occ",
-    "amb-occ2",
-    "shiny",
-    "ward",
-    "uber",
-    "view-caustics",
-    "view-irradiance",
-    "view-global",
-    "id",
-    "janino",
-];
+/// The keywords of a shader that has none of its own.
+const BARE: &[Key<Draft>] = &[NAME, TYPE];
+const AMBIENT_OCCLUSION: &[Key<Draft>] = &[NAME, TYPE, DIFF, BRIGHT, TEXTURE, DARK, SAMPLES, DIST];
+
+fn ambient_occlusion(draft: Draft, span: Span) -> Option<ShaderKind> {
+    let white = || ColorOrTexture::Color(Color::new_linear([1.0; 3], span));
+    Some(ShaderKind::AmbientOcclusion {
+        bright: draft.diffuse.unwrap_or_else(white),
+        dark: draft.dark.unwrap_or_else(|| Color::new_linear([0.0; 3], span)),
+        samples: draft.samples.unwrap_or(32),
+        distance: draft.distance.unwrap_or(0.0),
+    })
+}
+
+/// The shader that is written in Java.
+const JAVA: &str = "janino";
 
 /// How a shader type is read.
 pub(super) enum Type {
     Plain(&'static ShaderType),
     Procedural(&'static Declaration),
-    Unsupported,
 }
 
 /// The shader type called so.
 pub(super) fn type_called(name: &str) -> Option<Type> {
     let plain = SHADERS.iter().find(|shader| shader.name == name).map(Type::Plain);
     let procedural = || Texture::ALL.iter().find(|d| d.name == name).map(|d| Type::Procedural(d));
-    plain.or_else(procedural).or_else(|| UNSUPPORTED.contains(&name).then_some(Type::Unsupported))
+    plain.or_else(procedural)
 }
 
 fn type_names() -> impl Iterator<Item = &'static str> + Clone {
@@ -192,11 +311,7 @@ impl Type {
     pub fn keys(&self) -> Vec<Key<Draft>> {
         match self {
             Type::Plain(shader) => shader.keys.to_vec(),
-            Type::Procedural(declaration) => {
-                let parameters = declaration.parameters.iter();
-                [NAME, TYPE].into_iter().chain(parameters.map(|p| Key::new(p.name, "", parameter_value))).collect()
-            }
-            Type::Unsupported => Vec::new(),
+            Type::Procedural(declaration) => parameter_keys(declaration),
         }
     }
 
@@ -205,17 +320,22 @@ impl Type {
         match self {
             Type::Plain(shader) => (shader.build)(draft, span),
             Type::Procedural(declaration) => Some(ShaderKind::Procedural { declaration, settings: draft.settings }),
-            Type::Unsupported => None,
         }
     }
 
     fn required(&self) -> Vec<Required> {
         let own = match self {
             Type::Plain(shader) => shader.required,
-            Type::Procedural(_) | Type::Unsupported => &[],
+            Type::Procedural(_) => &[],
         };
         [NAME_REQUIRED].iter().chain(own).copied().collect()
     }
+}
+
+/// The keywords of a procedural material.
+pub(super) fn parameter_keys(declaration: &Declaration) -> Vec<Key<Draft>> {
+    let parameters = declaration.parameters.iter();
+    [NAME, TYPE].into_iter().chain(parameters.map(|p| Key::new(p.name, "", parameter_value))).collect()
 }
 
 impl Draft {
@@ -230,8 +350,9 @@ pub(super) fn shader(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     let found = match parser.outline().kind {
         None => Err(parser.missing_type(head, "shader", type_names())),
         Some(kind) => match type_called(&kind.value) {
-            Some(Type::Unsupported) | None => Err(parser.other_type(head, "shader", &kind, type_names(), UNSUPPORTED)),
             Some(shader) => Ok((kind, shader)),
+            None if kind.value == JAVA => Err(java(parser.span(head), "the shader", "a grey stands in")),
+            None => Err(unknown_word("shader type", &kind, type_names())),
         },
     };
     let (kind, shader) = match found {
@@ -274,23 +395,15 @@ impl Parser<'_> {
     }
 
     fn add_shader(&mut self, shader: Shader) {
-        match self.shader_names.get(&shader.name.value) {
-            Some(first) => {
-                let first = *first;
-                self.duplicate("shader", &shader.name, first);
-            }
-            None => {
-                self.shader_names.insert(shader.name.value.clone(), shader.name.span);
-            }
-        }
+        self.declare(Namespace::Shader, &shader.name);
         self.scene.shaders.push(shader);
     }
+}
 
-    /// Warns that a name is taken.
-    pub(super) fn duplicate(&mut self, what: &str, name: &Name, first: Span) {
-        let message = format!("there is already {what} `{}`; names find the first one", shorten(&name.value));
-        self.diagnostics.push(Diagnostic::warning(name.span, message).label(first, "first declared here"));
-    }
+/// The remark on something written in Java, which takes a compiler to read.
+pub(super) fn java(span: Span, what: &str, consequence: &str) -> Diagnostic {
+    let message = format!("skipped: {what} is written in Java (`janino`), which cannot be read: {consequence}");
+    Diagnostic::warning(span, message).hint("write it with the other types of this format")
 }
 
 /// Reads the value of a declared parameter.
@@ -352,5 +465,5 @@ impl Parser<'_> {
 pub(super) fn words() -> impl Iterator<Item = &'static str> {
     let keys = SHADERS.iter().flat_map(|shader| shader.keys).map(|key| key.name);
     let keys = keys.filter(|name| !name.starts_with("absorbtion"));
-    keys.chain(type_names()).chain(UNSUPPORTED.iter().copied())
+    keys.chain(type_names()).chain([JAVA])
 }

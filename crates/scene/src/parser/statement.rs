@@ -1,11 +1,11 @@
 //! The top level of a file: which words start a statement, and what happens between them.
 
 use super::value::{shorten, unknown_word};
-use super::{Context, Parsed, Parser, camera, image, include, light, object, shader};
-use crate::description::{Dialect, Filter, Name};
+use super::{Context, Parsed, Parser, camera, gi, image, include, light, modifier, object, shader};
+use crate::description::{Dialect, Filter};
 use crate::diagnostic::Diagnostic;
 use crate::lexer::Token;
-use crate::source::{Span, Spanned};
+use crate::source::Spanned;
 use crate::suggest;
 
 /// How a statement goes on after its keyword.
@@ -43,10 +43,11 @@ const STATEMENTS: &[Statement] = &[
     block("shader", shader::shader),
     block("object", object::object),
     block("instance", object::instance),
-    block("gi", unsupported),
-    block("photons", unsupported),
-    block("lightserver", unsupported),
-    block("modifier", unsupported),
+    block("gi", gi::gi),
+    block("photons", gi::photons),
+    block("lightserver", gi::lightserver),
+    block("modifier", modifier::modifier),
+    block("texture", modifier::texture),
     line("include", "include \"file.sc\"", include::include),
     line("includepath", "includepath \"folder\"", include::include_path),
     line("texturepath", "texturepath \"folder\"", include::texture_path),
@@ -148,40 +149,6 @@ impl Parser<'_> {
         let diagnostic = Diagnostic::error(self.span(head), format!("`{what}` lacks `type`"));
         diagnostic.hint(format!("types are {}", suggest::list_all(names)))
     }
-
-    /// The remark on a type that is not among the `supported`: a warning if it is one of Sunflow's.
-    pub(super) fn other_type(
-        &self,
-        head: Token,
-        what: &str,
-        kind: &Name,
-        supported: impl Iterator<Item = &'static str> + Clone,
-        unsupported: &[&'static str],
-    ) -> Diagnostic {
-        if unsupported.contains(&kind.value.as_str()) {
-            return skipped(self.span(head), &format!("{what} type `{}`", kind.value));
-        }
-        let all = supported.clone().chain(unsupported.iter().copied());
-        match suggest::nearest(&kind.value, all.clone()) {
-            Some(_) => unknown_word(&format!("{what} type"), kind, all),
-            None => unknown_word(&format!("{what} type"), kind, supported),
-        }
-    }
-}
-
-/// The remark on something of Sunflow's that is passed over.
-fn skipped(span: Span, what: &str) -> Diagnostic {
-    Diagnostic::warning(span, format!("skipped: {what} is not supported yet"))
-}
-
-fn unsupported(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
-    let keyword = STATEMENTS.iter().find(|s| parser.is(head, s.name)).map_or("", |statement| statement.name);
-    parser.open(keyword)?;
-    let kind = parser.outline().kind;
-    let is_off = keyword == "gi" && kind.is_some_and(|kind| matches!(kind.value.as_str(), "none" | "null"));
-    let remark = skipped(parser.span(head), &format!("`{keyword}`"));
-    parser.skip_block(head, (!is_off).then_some(remark));
-    Ok(())
 }
 
 fn override_shader(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
@@ -190,7 +157,7 @@ fn override_shader(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
     if next.is_none_or(|token| STATEMENTS.iter().any(|statement| parser.is(token, statement.name))) {
         return Err(parser.expected("`true` or `false` after the name", next));
     }
-    parser.boolean()?;
+    parser.scene.override_photons = parser.boolean()?.value;
     parser.scene.override_shader = (name.value != "none").then_some(name);
     Ok(())
 }
@@ -218,11 +185,25 @@ fn filter(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
     Ok(())
 }
 
-/// In which order Sunflow renders: nothing that could be seen.
+/// `bucket SIZE ORDER`: in which squares and in which order Sunflow renders, which can hardly be seen.
 fn bucket(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
-    parser.int()?;
-    parser.word("a bucket order").map(drop)
+    let size = parser.spanned(Parser::int)?;
+    let value = parser.clamped("the size of a bucket", size, 16, 512) as u32;
+    let order = parser.word("a bucket order")?;
+    parser.scene.image.bucket = Some(Spanned::new(value, size.span));
+    let name = order.value.rsplit_once(' ').filter(|(prefix, _)| REVERSED.contains(prefix));
+    let name = name.map_or(order.value.as_str(), |(_, name)| name);
+    if !ORDERS.contains(&name) {
+        let mut diagnostic = unknown_word("bucket order", &order, ORDERS.into_iter());
+        diagnostic.severity = crate::Severity::Warning;
+        parser.diagnostics.push(diagnostic);
+    }
+    Ok(())
 }
+
+/// Orders of buckets, and what may stand before them within the quotes.
+const ORDERS: [&str; 6] = ["column", "diagonal", "hilbert", "random", "row", "spiral"];
+const REVERSED: [&str; 3] = ["reverse", "inverse", "invert"];
 
 /// Sunflow ignores it as well.
 fn accel(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
@@ -272,7 +253,8 @@ mod tests {
         let statements = STATEMENTS.iter().map(|statement| statement.name);
         let filters = FILTERS.iter().map(|(name, _)| *name);
         let all = statements.chain(filters).chain(image::words()).chain(camera::words()).chain(light::words());
-        let all: Vec<&str> = all.chain(shader::words()).chain(object::words()).collect();
+        let all = all.chain(shader::words()).chain(object::words()).chain(gi::words()).chain(modifier::words());
+        let all: Vec<&str> = all.chain(ORDERS).collect();
         assert!(all.len() > 120, "{}", all.len());
         let missing: Vec<&&str> = all.iter().filter(|word| !written.contains(**word)).collect();
         assert!(missing.is_empty(), "docs/format.md lacks {missing:?}");

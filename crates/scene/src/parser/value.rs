@@ -149,6 +149,12 @@ impl Parser<'_> {
     }
 }
 
+/// Keeps a value where it was read.
+pub(super) fn put<T>(slot: &mut Option<T>, value: Parsed<T>) -> Parsed<()> {
+    *slot = Some(value?);
+    Ok(())
+}
+
 /// An error about a word that is not among `known`, with the nearest one or all of them as a hint.
 pub(super) fn unknown_word<'a>(what: &str, word: &Name, known: impl Iterator<Item = &'a str> + Clone) -> Diagnostic {
     let what = what.trim_start_matches("a ").trim_start_matches("an ").trim_start_matches("the ");

@@ -52,6 +52,43 @@ light { type directional source 0 0 4 target 0 0 0 radius 1 emit 1 0.5 0.25 inte
 light { type point power { "blackbody" 2000 } p 0 0 0 }
 "#;
 
+/// The blocks that the skeleton and the others name only in passing.
+pub const REST: &str = r#"gi { type igi samples 64 sets 2 b 0.00003 bias-samples 1 }
+gi { type ambocc bright 1 1 1 dark 0 0 0 samples 32 maxdist 3 }
+gi { type fake up 0 1 0 sky 0.5 0.5 1 ground 0.1 0.1 0.1 }
+gi { type path samples 16 bounces 4 }
+photons { emit 1000 global grid 50 0.5 caustics kd 50 0.5 }
+lightserver { shadows true direct-samples 3 glossy-samples 2 max-depth 4 global false 1 2 3 4 caustics true 1 0.5 2 0.5 irr-cache 1 2 3 4 }
+image { sampler multipass samples 8 cache true show-aa false output a.png }
+texture { name veins type marble depth 3 scale 2 }
+modifier { name b type bump texture veins scale 0.5 }
+modifier { name n type normalmap texture "n.png" }
+modifier { name q type perlin function 1 size 2 scale 50 }
+shader { name w type ward texture veins spec 0.5 0.5 0.5 rough 0.2 0.1 samples 8 }
+shader { name a type amb-occ bright 1 1 1 dark 0.1 0 0 samples 16 dist 2 }
+shader { name a2 type amb-occ2 texture "t.png" }
+shader { name u type uber diff 0.5 0.5 0.5 diff.texture veins diff.blend 0.25 refl 0.1 0.1 0.1 spec.texture "s.png" glossy 0.1 samples 2 }
+shader { name wf type wireframe line 1 0 0 fill 0 0 0 width 0.01 }
+shader { name vc type view-caustics } shader { name vi type view-irradiance } shader { name vg type view-global } shader { name i type id }
+light { type spherical color 1 1 1 radiance 10 center 3 0 3 radius 1 samples 16 }
+light { type meshlight name lamp emit 1 1 1 radiance 5 samples 2 points 3 0 0 0 1 0 0 0 1 0 triangles 1 0 1 2 }
+light { type mesh name old emit 1 1 1 3 1 v 0 0 0 0 0 1 0 0 v 1 0 0 0 0 1 0 0 v 0 1 0 0 0 1 0 0 t 0 1 2 }
+light { type sunsky up 0 0 1 east 0 1 0 sundir 1 1 1 turbidity 4 ground.extendsky true }
+light { type ibl image "sky.hdr" center 0 -1 0 up 0 0 1 lock true lowsamples 5 }
+light { type cornellbox corner0 -1 -1 0 corner1 1 1 2 left 0.8 0.2 0.2 right 0.2 0.2 0.8 top 0.7 0.7 0.7 bottom 0.7 0.7 0.7 back 0.7 0.7 0.7 emit 15 15 15 samples 32 }
+object { shader w modifiers 2 b None type file-mesh name f filename "a.obj" smooth_normals true }
+object { noinstance type bezier-mesh name z n 3 4 wrap true false points 0 0 0 1 0 0 1 1 0 0 0 1 1 0 1 1 1 1 0 0 2 1 0 2 1 1 2 0 0 3 1 0 3 1 1 3 subdivs 4 smooth false }
+object { shader w modifier n type gumbo subdivs 3 } object { shader w type torus r 0.25 1 }
+object { shader w type cylinder } object { shader w type banchoff }
+object { shader w type sphereflake level 3 axis 0 1 0 radius 2 } object { shader w type julia q 0.1 0.2 0.3 0.4 iterations 8 epsilon 0.001 }
+object { shader w type hair segments 1 width 0.1 points 12 0 0 0 0 0 1 1 0 0 1 0 1 }
+object { shader w type particles filename "p.dat" little_endian num 10 radius 0.5 }
+object { shader w type dlasurface points 2 0 0 0 1 1 1 radius 0.25 }
+instance { name zz geometry z transform { } shader w modifier q }
+bucket 64 "reverse spiral"
+camera { type fisheye transform { } } camera { type pinhole eye 0 0 5 target 0 0 0 up 0 1 0 fov 40 aspect 1 shift 0.5 0 }
+"#;
+
 /// Reads a text that includes nothing.
 pub fn read(text: &str) -> (Scene, Diagnostics) {
     parse(Path::new("test.sc"), text.as_bytes(), &MemoryLoader::default())
