@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 use jaspe_texture::{Space, Texture};
 
+use crate::geometry::Rows;
 use crate::options::Look;
 use crate::picture::{Picture, PicturePixels};
 
@@ -60,46 +61,20 @@ pub(crate) struct Procedural {
     pub decode: bool,
 }
 
-/// A batch of texture points, and room for what comes of it.
-#[derive(Debug, Default)]
-pub(crate) struct TextureBatch {
-    x: Vec<f32>,
-    y: Vec<f32>,
-    z: Vec<f32>,
-    colors: Vec<[f32; 3]>,
-}
-
-impl TextureBatch {
-    pub fn clear(&mut self) {
-        self.x.clear();
-        self.y.clear();
-        self.z.clear();
-    }
-
-    #[inline]
-    pub fn push(&mut self, p: Vec3) {
-        self.x.push(p.x);
-        self.y.push(p.y);
-        self.z.push(p.z);
-    }
-
-    /// Colours of all points, in the dialect's working space, appended to `out`.
-    pub fn evaluate(&mut self, procedural: &Procedural, out: &mut Vec<Vec3>) {
-        self.colors.clear();
-        self.colors.resize(self.x.len(), [0.0; 3]);
-        match procedural.texture.space() {
-            Space::Uv => procedural.texture.colors([&self.x, &self.y], &mut self.colors),
-            Space::Local | Space::World => procedural.texture.colors([&self.x, &self.y, &self.z], &mut self.colors),
+impl Procedural {
+    /// Colours at all points, in the dialect's working space. The third coordinate of points in texture coordinates
+    /// means nothing.
+    pub fn evaluate(&self, points: &Rows, colors: &mut Vec<[f32; 3]>) {
+        let count = points.x.len();
+        colors.resize(count, [0.0; 3]);
+        let [x, y, z] = points.slices(count);
+        match self.texture.space() {
+            Space::Uv => self.texture.colors([x, y], colors),
+            Space::Local | Space::World => self.texture.colors([x, y, z], colors),
         }
-        if procedural.decode {
-            out.extend(self.colors.iter().map(|c| Vec3::from_array(c.map(decode_display))));
-        } else {
-            out.extend(self.colors.iter().map(|&c| Vec3::from_array(c)));
+        if self.decode {
+            colors.iter_mut().for_each(|color| *color = color.map(decode_display));
         }
-    }
-
-    pub fn len(&self) -> usize {
-        self.x.len()
     }
 }
 

@@ -7,13 +7,12 @@ mod shade;
 use glam::{Vec2, Vec3};
 use jaspe_texture::Space;
 
-use crate::geometry::simd::{self, Simd};
-use crate::geometry::{Geometry, Hit, Id, PlaneShape, Ray, Shape};
-use crate::material::{Albedo, Material, TextureBatch};
+use crate::geometry::{Geometry, Hit, Hits, Id, PlaneShape, Ray, Rays, Shape};
+use crate::material::Albedo;
 use crate::math;
-use crate::wave::{Batch, Node, PathRay, Queues, Rules};
+use crate::wave::{Batch, Path, Queues, Rules};
 pub(crate) use camera::{Grid, ReportCamera};
-use shade::{CHUNK, Points, Share, spawn_all};
+use shade::{Room, spawn_all};
 
 /// Light that is there without any light source.
 const AMBIENT: f32 = 0.01;
@@ -43,83 +42,83 @@ pub(crate) struct Report {
     pub plane_axes: Vec<[Vec3; 2]>,
 }
 
+/// Where light is gathered: the original adds up what a ray brings in a way of its own, so every ray has such a node.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Gathered {
+    /// Light from lights.
+    direct: Vec3,
+    /// Light from child nodes, by their shares.
+    indirect: Vec3,
+    /// The node that gets this one's light, and how much of it; nothing of that for camera samples.
+    parent: u32,
+    share: f32,
+    /// What the sum is multiplied by; zero where the ray met nothing.
+    gain: f32,
+}
+
+impl Gathered {
+    /// The light of a node whose children are complete.
+    fn finish(&self) -> Vec3 {
+        let direct = self.direct.clamp(Vec3::ZERO, Vec3::ONE);
+        ((Vec3::splat(AMBIENT) + direct + self.indirect) * self.gain).clamp(Vec3::ZERO, Vec3::ONE)
+    }
+}
+
 impl Rules for Report {
-    fn shade(&self, batch: &Batch<'_>, textures: &mut TextureBatch, colors: &mut Vec<Vec3>, queues: &mut Queues) {
-        let material = batch.material;
-        self.albedos(batch, material, textures, colors);
-        queues.stats.texture_points += textures.len() as u64;
-        textures.clear();
-        simd::run(Light { report: self, batch, material, colors, queues });
-    }
+    type Node = Gathered;
+    type Room = Room;
+    const T_MIN: f32 = T_MIN;
 
-    fn miss(&self, _: &PathRay) -> Option<Vec3> {
-        Some(Vec3::ZERO)
-    }
-
-    fn finish(&self, node: &Node) -> Vec3 {
-        let direct = node.direct.clamp(Vec3::ZERO, Vec3::ONE);
-        ((Vec3::splat(AMBIENT) + direct + node.indirect) * node.gain).clamp(Vec3::ZERO, Vec3::ONE)
-    }
-
-    fn t_min(&self) -> f32 {
-        T_MIN
-    }
-}
-
-/// Light and secondary rays of a batch, as a kernel.
-struct Light<'a, 'b> {
-    report: &'a Report,
-    batch: &'a Batch<'b>,
-    material: &'a Material,
-    colors: &'a [Vec3],
-    queues: &'a mut Queues,
-}
-
-impl simd::Kernel for Light<'_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self) {
-        let Light { report, batch, material, colors, queues } = self;
-        let share = Share::of(material);
-        let mut points = Points::NONE;
-        for (chunk, colors) in batch.chunks(CHUNK).zip(colors.chunks(CHUNK)) {
-            report.locate(&chunk, &mut points);
-            for &(_, node) in &points.ids[..colors.len()] {
-                queues.nodes[node as usize].gain = share.gain;
-            }
-            report.direct(&chunk, material, &points, colors, queues);
-            if share.reflected > 0.0 || share.refracted > 0.0 {
-                spawn_all(&chunk, &share, &points, queues);
-            }
+    fn shade(&self, batch: &Batch<'_>, room: &mut Room, queues: &mut Queues<Gathered>) {
+        room.locate(self, batch);
+        self.albedos(batch, room);
+        if let Albedo::Procedural(_) = batch.material.albedo {
+            queues.stats.texture_points += batch.members.len() as u64;
         }
+        self.direct(batch, room, queues);
+        spawn_all(batch, room, queues);
+    }
+
+    fn miss(&self, _: &Path, _: Vec3, _: &mut Gathered) -> bool {
+        true
+    }
+
+    fn seen(&self, _: &Geometry, _: &Rays, _: &Hits, _: usize) -> Vec3 {
+        Vec3::ZERO
+    }
+
+    fn resolve(&self, nodes: &mut [Gathered], samples: usize, colors: &mut Vec<Vec3>) {
+        // Last to first: children before their parents.
+        for i in (samples..nodes.len()).rev() {
+            let node = nodes[i];
+            nodes[node.parent as usize].indirect += node.share * node.finish();
+        }
+        colors.clear();
+        colors.extend(nodes[..samples].iter().map(Gathered::finish));
     }
 }
 
 impl Report {
     /// Colours of a batch, one per member.
-    fn albedos(&self, batch: &Batch<'_>, material: &Material, textures: &mut TextureBatch, colors: &mut Vec<Vec3>) {
-        let geometry = batch.geometry;
-        let position = |path: &PathRay, hit: &Hit| path.ray.origin + path.ray.direction * hit.t;
-        match &material.albedo {
-            Albedo::Color(color) => colors.resize(batch.members.len(), *color),
-            Albedo::Picture(picture) => colors
-                .extend(batch.iter().map(|(path, hit)| picture.nearest(self.uv(geometry, hit, position(path, hit))))),
-            Albedo::Procedural(procedural) => {
-                textures.clear();
-                for (path, hit) in batch.iter() {
-                    let p = position(path, hit);
-                    textures.push(match procedural.texture.space() {
-                        Space::World => p,
-                        Space::Local => (p - self.reference(geometry, hit)).normalize_or_zero(),
-                        Space::Uv => {
-                            let Vec2 { x, y } = self.uv(geometry, hit, p);
-                            Vec3::new(x, y, 0.0)
-                        }
-                    });
-                }
-                textures.evaluate(procedural, colors);
+    fn albedos(&self, batch: &Batch<'_>, room: &mut Room) {
+        let Room { position, outward, texture_points, colors, .. } = room;
+        let uv = |i: usize| self.uv(batch.geometry, &batch.hit(i), position.get(i));
+        let count = batch.members.len();
+        colors.resize(count, [0.0; 3]);
+        match &batch.material.albedo {
+            Albedo::Color(color) => colors.fill(color.to_array()),
+            Albedo::Picture(picture) => {
+                colors.iter_mut().enumerate().for_each(|(i, color)| *color = picture.nearest(uv(i)).to_array());
             }
+            Albedo::Procedural(procedural) => match procedural.texture.space() {
+                Space::World => procedural.evaluate(position, colors),
+                Space::Local => procedural.evaluate(outward, colors),
+                Space::Uv => {
+                    texture_points.resize(count);
+                    (0..count).for_each(|i| texture_points.set(i, uv(i).extend(0.0)));
+                    procedural.evaluate(texture_points, colors);
+                }
+            },
         }
     }
 
@@ -162,25 +161,22 @@ impl Report {
     /// the original it was the first point that any of its threads shaded.)
     pub fn fix_plane_axes(&mut self, geometry: &Geometry, size: [u32; 2]) {
         let mut first: Vec<Option<Vec3>> = vec![None; geometry.planes.len()];
-        let mut hits = Vec::new();
+        let (mut rays, mut hits) = (Rays::default(), Hits::default());
         let mut scratch = crate::geometry::Scratch::default();
         for y in 0..size[1] {
             if first.iter().all(Option::is_some) {
                 break;
             }
-            let rays: Vec<PixelRay> = (0..size[0])
-                .map(|x| {
-                    let (origin, direction) = self.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
-                    PixelRay(Ray { origin, direction, t_min: T_MIN, t_max: f32::INFINITY, skip: Id::NONE })
-                })
-                .collect();
-            geometry.closest(&rays, &mut hits, &mut scratch);
-            for (ray, hit) in rays.iter().zip(&hits) {
-                if hit.id == Id::NONE {
-                    continue;
-                }
-                if let Shape::Plane(index) = geometry.objects[hit.id.object as usize].shape {
-                    first[index as usize].get_or_insert(ray.0.origin + ray.0.direction * hit.t);
+            rays.clear();
+            for x in 0..size[0] {
+                let (origin, direction) = self.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
+                rays.push(Ray { origin, direction, t_min: T_MIN, t_max: f32::INFINITY, skip: Id::NONE });
+            }
+            geometry.closest(rays.view(T_MIN), &mut hits, &mut scratch);
+            for i in 0..rays.len() {
+                let Some(object) = geometry.objects.get(hits.id.object[i] as usize) else { continue };
+                if let Shape::Plane(index) = object.shape {
+                    first[index as usize].get_or_insert(rays.origin.get(i) + rays.direction.get(i) * hits.t[i]);
                 }
             }
         }
@@ -189,15 +185,6 @@ impl Report {
             [along.cross(plane.normal).normalize_or(math::basis(plane.normal).1), along]
         };
         self.plane_axes = geometry.planes.iter().zip(&first).map(axes).collect();
-    }
-}
-
-/// A ray by itself, for the geometry's batches.
-struct PixelRay(Ray);
-
-impl AsRef<Ray> for PixelRay {
-    fn as_ref(&self) -> &Ray {
-        &self.0
     }
 }
 

@@ -4,15 +4,17 @@
 //! samples where neighbours or the samples themselves disagree. Decisions are made between passes, from whole
 //! pictures, so that neither tiles nor threads leave a trace.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::compile::{CompiledScene, Meaning, Sampling};
-use crate::film::{Encoding, Film};
+use crate::film::{Encoding, Film, Pixel};
 use crate::options::{Cancelled, Observer, RenderOptions, Stats};
-use crate::wave::{CameraSample, Rules, SampleResult, Seen, Target, Workspace};
+use crate::wave::{Results, Rules, Samples, Seen, Shots, Workspace};
 
 /// Pixels along the edge of a tile.
 const TILE: u32 = 32;
@@ -20,46 +22,54 @@ const TILE: u32 = 32;
 const WAVE: usize = 1024;
 
 /// Sums over the samples of one pixel.
-#[derive(Debug, Clone, Copy)]
-struct Accumulator {
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
     /// Colour and coverage, weighted.
-    sum: [f32; 4],
+    color: [f32; 4],
     /// Weights.
     weight: f32,
-    /// Brightness and its square, for the spread within the pixel.
+}
+
+impl Sum {
+    fn add(&mut self, color: Vec3, covered: bool, weight: f32) {
+        self.color[0] += color.x * weight;
+        self.color[1] += color.y * weight;
+        self.color[2] += color.z * weight;
+        self.color[3] += if covered { weight } else { 0.0 };
+        self.weight += weight;
+    }
+
+    fn mean(&self) -> Pixel {
+        // Over the weights and not the count: where all samples agree, negative lobes leave no trace.
+        if self.weight > 0.0 { self.color.map(|sum| sum / self.weight) } else { [0.0; 4] }
+    }
+}
+
+/// What decides whether a pixel gets more samples, beside its sum.
+#[derive(Debug, Clone, Copy)]
+struct Spread {
+    /// Brightness of the samples and its square, summed.
     brightness: [f32; 2],
     count: u32,
     /// What the first sample saw.
     seen: Seen,
 }
 
-impl Accumulator {
-    const EMPTY: Accumulator =
-        Accumulator { sum: [0.0; 4], weight: 0.0, brightness: [0.0; 2], count: 0, seen: Seen::NOTHING };
+impl Spread {
+    const EMPTY: Spread = Spread { brightness: [0.0; 2], count: 0, seen: Seen::NOTHING };
 
-    fn add(&mut self, result: &SampleResult, weight: f32) {
+    fn add(&mut self, color: Vec3, seen: Seen) {
         if self.count == 0 {
-            self.seen = result.seen;
+            self.seen = seen;
         }
-        let c = result.color;
-        let brightness = c.max_element();
-        self.sum[0] += c.x * weight;
-        self.sum[1] += c.y * weight;
-        self.sum[2] += c.z * weight;
-        self.sum[3] += result.coverage * weight;
-        self.weight += weight;
+        let brightness = color.max_element();
         self.brightness[0] += brightness;
         self.brightness[1] += brightness * brightness;
         self.count += 1;
     }
 
-    fn mean(&self) -> [f32; 4] {
-        // Over the weights and not the count: where all samples agree, negative lobes leave no trace.
-        if self.weight > 0.0 { self.sum.map(|sum| sum / self.weight) } else { [0.0; 4] }
-    }
-
     /// Standard deviation of the samples' brightness over their mean.
-    fn spread(&self) -> f32 {
+    fn deviation(&self) -> f32 {
         let n = self.count as f32;
         let mean = self.brightness[0] / n;
         let variance = (self.brightness[1] / n - mean * mean).max(0.0);
@@ -84,6 +94,13 @@ impl Rect {
         (y - self.0[1]) as usize * self.width() as usize + (x - self.0[0]) as usize
     }
 
+    /// The part that two rectangles share, perhaps none.
+    fn meet(self, other: Rect) -> Rect {
+        let ([ax0, ay0, ax1, ay1], [bx0, by0, bx1, by1]) = (self.0, other.0);
+        let (x0, y0) = (ax0.max(bx0), ay0.max(by0));
+        Rect([x0, y0, ax1.min(bx1).max(x0), ay1.min(by1).max(y0)])
+    }
+
     fn pixels(self) -> u64 {
         u64::from(self.width()) * u64::from(self.height())
     }
@@ -93,8 +110,10 @@ impl Rect {
 struct Tile {
     rect: Rect,
     /// Made when the first sample falls, by the thread that traces it; then one for each pixel.
-    pixels: Vec<Accumulator>,
-    /// Pixels that the current pass adds samples to, as indices into `pixels`.
+    sums: Vec<Sum>,
+    /// As many, where samples decide about more samples; else none.
+    spreads: Vec<Spread>,
+    /// Pixels that the current pass adds samples to, as indices into `sums`.
     active: Active,
 }
 
@@ -105,6 +124,10 @@ enum Active {
 }
 
 impl Tile {
+    fn new(rect: Rect) -> Tile {
+        Tile { rect, sums: Vec::new(), spreads: Vec::new(), active: Active::All }
+    }
+
     /// How many pixels the current pass adds samples to.
     fn active_count(&self) -> u64 {
         match &self.active {
@@ -112,15 +135,24 @@ impl Tile {
             Active::Some(pixels) => pixels.len() as u64,
         }
     }
+
+    /// Column and row of a pixel.
+    fn position(&self, slot: u32) -> [u32; 2] {
+        [self.rect.0[0] + slot % self.rect.width(), self.rect.0[1] + slot / self.rect.width()]
+    }
 }
 
 /// One thread's room for the waves of its tiles.
-#[derive(Default)]
-struct Room {
-    workspace: Workspace,
-    targets: Vec<Target>,
-    samples: Vec<CameraSample>,
-    results: Vec<SampleResult>,
+struct Room<R: Rules> {
+    workspace: Workspace<R>,
+    pixels: Vec<[u32; 2]>,
+    samples: Samples,
+}
+
+impl<R: Rules> Default for Room<R> {
+    fn default() -> Self {
+        Room { workspace: Workspace::default(), pixels: Vec::new(), samples: Samples::default() }
+    }
 }
 
 /// One pass: every active pixel gets the samples `first..end` of its sequence.
@@ -184,18 +216,15 @@ impl<'a, R: Rules> Job<'a, R> {
     }
 
     fn passes(&self) -> Result<(Film, Stats), Cancelled> {
-        let mut tiles = self.tiles();
         let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
-        match self.scene.sampling {
-            Sampling::Fixed { count } => {
-                self.pass(&mut tiles, Pass { first: 0, end: count, restart: false }, &mut stats)?;
-            }
-            Sampling::Report { edge, repeats } => {
-                self.pass(&mut tiles, Pass { first: 0, end: edge * edge * repeats, restart: false }, &mut stats)?;
-            }
+        let once = |end: u32| Pass { first: 0, end, restart: false };
+        let film = match self.scene.sampling {
+            Sampling::Fixed { count } => self.single_pass(once(count), &mut stats)?,
+            Sampling::Report { edge, repeats } => self.single_pass(once(edge * edge * repeats), &mut stats)?,
             Sampling::Adaptive { min_level, max_level, repeats, contrast } => {
+                let mut tiles: Vec<Tile> = self.tiles().map(Tile::new).collect();
                 let count = |level: u32| (1 << (2 * level)) * repeats;
-                self.pass(&mut tiles, Pass { first: 0, end: count(min_level), restart: false }, &mut stats)?;
+                self.pass(&mut tiles, once(count(min_level)), &mut stats)?;
                 for level in min_level + 1..=max_level {
                     let threshold = contrast * (1 << (level - 1)) as f32;
                     self.refine(&mut tiles, level == min_level + 1, threshold);
@@ -203,87 +232,117 @@ impl<'a, R: Rules> Job<'a, R> {
                     let first = if single { 0 } else { count(level - 1) };
                     self.pass(&mut tiles, Pass { first, end: count(level), restart: single }, &mut stats)?;
                 }
+                let mut film = self.film();
+                tiles.iter().for_each(|tile| self.develop(tile, &mut film));
+                film
             }
-        }
-        Ok((self.film(&tiles), stats))
+        };
+        Ok((film, stats))
     }
 
-    /// The tiles of the region, row by row, every pixel active.
-    fn tiles(&self) -> Vec<Tile> {
+    /// The tiles of the region, row by row.
+    fn tiles(&self) -> impl Iterator<Item = Rect> {
         let [x0, y0, x1, y1] = self.region.0;
-        let mut tiles = Vec::new();
-        for y in (y0..y1).step_by(TILE as usize) {
-            for x in (x0..x1).step_by(TILE as usize) {
-                let rect = Rect([x, y, (x + TILE).min(x1), (y + TILE).min(y1)]);
-                tiles.push(Tile { rect, pixels: Vec::new(), active: Active::All });
-            }
-        }
-        tiles
+        let row = move |y: u32| {
+            let rect = move |x: u32| Rect([x, y, (x + TILE).min(x1), (y + TILE).min(y1)]);
+            (x0..x1).step_by(TILE as usize).map(rect)
+        };
+        (y0..y1).step_by(TILE as usize).flat_map(row)
     }
 
-    /// A pixel of the region.
-    fn pixel<'t>(&self, tiles: &'t [Tile], x: u32, y: u32) -> &'t Accumulator {
+    /// A pixel of the region: its tile, and its place there.
+    fn pixel<'t>(&self, tiles: &'t [Tile], x: u32, y: u32) -> (&'t Tile, usize) {
         let column = (x - self.region.0[0]) / TILE;
         let row = (y - self.region.0[1]) / TILE;
         let tile = &tiles[(row * self.region.width().div_ceil(TILE) + column) as usize];
-        &tile.pixels[tile.rect.index(x, y)]
+        (tile, tile.rect.index(x, y))
+    }
+
+    /// All samples of all pixels at once: a tile goes to the film as soon as it is done.
+    fn single_pass(&self, pass: Pass, stats: &mut Stats) -> Result<Film, Cancelled> {
+        self.total.fetch_add(self.region.pixels() * u64::from(pass.end), Ordering::Relaxed);
+        let film = Mutex::new(self.film());
+        let tiles: Vec<Rect> = self.tiles().collect();
+        let gathered = tiles.par_iter().map_init(Room::default, |room, &rect| {
+            let mut tile = Tile::new(rect);
+            let stats = self.work(&mut tile, pass, room);
+            // Each tile writes its own pixels, in whatever order. A poisoned lock means a panic that is on its way.
+            self.develop(&tile, &mut film.lock().unwrap_or_else(PoisonError::into_inner));
+            stats
+        });
+        *stats = stats.plus(gathered.reduce(Stats::default, Stats::plus));
+        if self.observer.cancelled() {
+            return Err(Cancelled);
+        }
+        Ok(film.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
     fn pass(&self, tiles: &mut [Tile], pass: Pass, stats: &mut Stats) -> Result<(), Cancelled> {
         let samples = u64::from(pass.end - pass.first);
         let work: u64 = tiles.iter().map(|tile| tile.active_count() * samples).sum();
         self.total.fetch_add(work, Ordering::Relaxed);
-        let gathered = tiles
-            .par_iter_mut()
-            .map_init(Room::default, |room, tile| {
-                room.workspace.queues.stats = Stats::default();
-                if tile.active_count() > 0 && !self.observer.cancelled() {
-                    self.tile(tile, pass, room);
-                }
-                room.workspace.queues.stats
-            })
-            .reduce(Stats::default, Stats::plus);
-        *stats = stats.plus(gathered);
+        let gathered = tiles.par_iter_mut().map_init(Room::default, |room, tile| {
+            if tile.spreads.is_empty() {
+                tile.spreads = vec![Spread::EMPTY; tile.rect.pixels() as usize];
+            }
+            self.work(tile, pass, room)
+        });
+        *stats = stats.plus(gathered.reduce(Stats::default, Stats::plus));
         if self.observer.cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
     /// Adds the samples of a pass to the active pixels of a tile, a wave at a time.
-    fn tile(&self, tile: &mut Tile, pass: Pass, room: &mut Room) {
-        tile.pixels.resize(tile.rect.pixels() as usize, Accumulator::EMPTY);
+    fn work(&self, tile: &mut Tile, pass: Pass, room: &mut Room<R>) -> Stats {
+        room.workspace.queues.stats = Stats::default();
+        tile.sums.resize(tile.rect.pixels() as usize, Sum::default());
         let active = match std::mem::replace(&mut tile.active, Active::Some(Vec::new())) {
-            Active::All => (0..tile.pixels.len() as u32).collect(),
+            Active::All => (0..tile.sums.len() as u32).collect(),
             Active::Some(pixels) => pixels,
         };
-        for &pixel in &active {
-            let at = [tile.rect.0[0] + pixel % tile.rect.width(), tile.rect.0[1] + pixel / tile.rect.width()];
-            if pass.restart {
-                let seen = tile.pixels[pixel as usize].seen;
-                tile.pixels[pixel as usize] = Accumulator { seen, ..Accumulator::EMPTY };
-            }
-            for index in pass.first..pass.end {
-                room.targets.push(Target { pixel: at, slot: pixel, index });
-                if room.targets.len() == WAVE {
-                    self.wave(tile, pass, room);
-                    if self.observer.cancelled() {
-                        return;
-                    }
+        if pass.restart {
+            for &slot in &active {
+                tile.sums[slot as usize] = Sum::default();
+                if let Some(spread) = tile.spreads.get_mut(slot as usize) {
+                    *spread = Spread { seen: spread.seen, ..Spread::EMPTY };
                 }
             }
         }
-        self.wave(tile, pass, room);
+        // As many pixels as fill a wave, or as many samples of one.
+        let each = ((pass.end - pass.first) as usize).clamp(1, WAVE);
+        for slots in active.chunks(WAVE / each) {
+            room.pixels.clear();
+            room.pixels.extend(slots.iter().map(|&slot| tile.position(slot)));
+            for first in (pass.first..pass.end).step_by(each) {
+                if self.observer.cancelled() {
+                    return room.workspace.queues.stats;
+                }
+                self.wave(tile, slots, first..pass.end.min(first + each as u32), pass, room);
+            }
+        }
+        room.workspace.queues.stats
     }
 
-    fn wave(&self, tile: &mut Tile, pass: Pass, room: &mut Room) {
-        let Room { workspace, targets, samples, results } = room;
-        samples.clear();
-        self.scene.camera_samples(targets, pass.end, self.options.seed, samples);
-        workspace.trace(&self.scene.world, self.rules, samples, results);
-        for ((target, sample), result) in targets.iter().zip(&*samples).zip(&*results) {
-            tile.pixels[target.slot as usize].add(result, sample.weight);
+    /// Traces the samples `indices` of some pixels.
+    fn wave(&self, tile: &mut Tile, slots: &[u32], indices: Range<u32>, pass: Pass, room: &mut Room<R>) {
+        let Room { workspace, pixels, samples } = room;
+        let each = indices.len();
+        self.scene.aim(&Shots { pixels, indices, of: pass.end }, self.options.seed, samples);
+        let looks = !tile.spreads.is_empty();
+        workspace.trace(&self.scene.world, self.rules, samples, looks);
+        let Results { colors, covered, seen } = &workspace.results;
+        for (i, &slot) in slots.iter().enumerate() {
+            let sum = &mut tile.sums[slot as usize];
+            for k in i * each..(i + 1) * each {
+                sum.add(colors[k], covered[k], samples.weights[k]);
+            }
+            if looks {
+                let spread = &mut tile.spreads[slot as usize];
+                (i * each..(i + 1) * each).for_each(|k| spread.add(colors[k], seen[k]));
+            }
         }
-        let done = self.done.fetch_add(samples.len() as u64, Ordering::Relaxed) + samples.len() as u64;
+        let count = colors.len() as u64;
+        let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
         self.observer.progress(done, self.total.load(Ordering::Relaxed));
-        targets.clear();
     }
 
     /// Chooses the pixels of the next pass: on the first refinement those that differ from a neighbour, and always
@@ -294,10 +353,12 @@ impl<'a, R: Rules> Job<'a, R> {
             let [cx0, cy0, cx1, cy1] = self.crop.0;
             let inner = (y0.max(cy0)..y1.min(cy1)).flat_map(|y| (x0.max(cx0)..x1.min(cx1)).map(move |x| (x, y)));
             let chosen = inner.filter(|&(x, y)| {
-                let pixel = &tile.pixels[tile.rect.index(x, y)];
-                // The spread of a pair that differs by the threshold t, |a − b| / (a + b) = t, is t.
-                let uneven = pixel.count > 1 && pixel.spread() > threshold;
-                uneven || first && self.neighbours(x, y).any(|(x, y)| differ(pixel, self.pixel(tiles, x, y), threshold))
+                let slot = tile.rect.index(x, y);
+                let spread = &tile.spreads[slot];
+                // The deviation of a pair that differs by the threshold t, |a − b| / (a + b) = t, is t.
+                let uneven = spread.count > 1 && spread.deviation() > threshold;
+                let neighbours = || self.neighbours(x, y).map(|(x, y)| self.pixel(tiles, x, y));
+                uneven || first && neighbours().any(|other| differ((tile, slot), other, threshold))
             });
             Active::Some(chosen.map(|(x, y)| tile.rect.index(x, y) as u32).collect())
         };
@@ -313,29 +374,38 @@ impl<'a, R: Rules> Job<'a, R> {
         rows.flat_map(move |row| columns.clone().map(move |column| (column, row))).filter(move |&at| at != (x, y))
     }
 
-    fn film(&self, tiles: &[Tile]) -> Film {
+    /// A film for what is asked for.
+    fn film(&self) -> Film {
         let encoding = match self.scene.meaning {
             Meaning::Sunflow { .. } => Encoding::Linear,
             Meaning::Report { .. } => Encoding::Display,
         };
-        let mut film = Film::new(self.crop.width(), self.crop.height(), encoding);
-        let [x0, y0, ..] = self.crop.0;
-        film.pixels.par_chunks_mut(self.crop.width() as usize).enumerate().for_each(|(row, pixels)| {
-            let y = y0 + row as u32;
-            pixels.iter_mut().zip(x0..).for_each(|(pixel, x)| *pixel = self.pixel(tiles, x, y).mean());
-        });
-        film
+        Film::new(self.crop.width(), self.crop.height(), encoding)
+    }
+
+    /// Writes a tile to the film, as far as it is asked for.
+    fn develop(&self, tile: &Tile, film: &mut Film) {
+        let [x0, y0, x1, y1] = tile.rect.meet(self.crop).0;
+        for y in y0..y1 {
+            let (from, to) = (tile.rect.index(x0, y), self.crop.index(x0, y));
+            let count = (x1 - x0) as usize;
+            for (pixel, sum) in film.pixels[to..to + count].iter_mut().zip(&tile.sums[from..from + count]) {
+                *pixel = sum.mean();
+            }
+        }
     }
 }
 
 /// Whether two neighbours may have an edge between them (format reference, §3.3, step 4).
-fn differ(a: &Accumulator, b: &Accumulator, threshold: f32) -> bool {
+fn differ((a, i): (&Tile, usize), (b, j): (&Tile, usize), threshold: f32) -> bool {
+    let (seen, other) = (a.spreads[i].seen, b.spreads[j].seen);
     let normals = |a: Vec3, b: Vec3| a != b && a.dot(b) < 0.9;
-    if a.seen.object != b.seen.object || normals(a.seen.normal, b.seen.normal) {
+    if seen.object != other.object || normals(seen.normal, other.normal) {
         return true;
     }
+    let (a, b) = (&a.sums[i], &b.sums[j]);
     // The test is the same at any scale, so sums over crossed weights do for means, without divisions.
-    a.sum.iter().zip(&b.sum).any(|(x, y)| {
+    a.color.iter().zip(&b.color).any(|(x, y)| {
         let (x, y) = (x * b.weight, y * a.weight);
         (x - y).abs() > threshold * (x + y).abs()
     })

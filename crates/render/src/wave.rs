@@ -1,14 +1,16 @@
 //! Rendering in waves: the rays of a tile as one batch, hits sorted by material, one texture evaluation per material
-//! and wave, shadow and secondary rays queued for the next wave, until the queues are empty.
+//! and wave, secondary rays queued for the next wave, until the queue is empty.
 //!
-//! Light travels back through *nodes*. Every camera sample has one; where a dialect combines what its secondary rays
-//! bring in a way that is not a plain sum, every ray has one, with a parent. Nodes are resolved last to first, which
-//! visits children before their parents.
+//! Everything that there are many of lies in rows, one number of all rays after the other, from the camera to the
+//! lights. Light travels back through *nodes*: every camera sample has one, and a dialect that combines what secondary
+//! rays bring in a way that is no plain sum may add more.
+
+use std::ops::Range;
 
 use glam::Vec3;
 
-use crate::geometry::{Geometry, Hit, Id, Ray, Scratch};
-use crate::material::{Material, TextureBatch};
+use crate::geometry::{Geometry, Hit, Hits, Id, Ray, Rays, Scratch};
+use crate::material::Material;
 use crate::options::Stats;
 use crate::sampler::SampleKey;
 
@@ -44,55 +46,85 @@ impl Depth {
     }
 }
 
-/// A ray that looks for a surface, and what its light counts where.
+/// What a ray is, beside where it goes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PathRay {
-    pub ray: Ray,
+pub(crate) struct Path {
+    /// What its light counts.
     pub weight: Vec3,
+    /// The node that gathers its light.
     pub node: u32,
-    pub key: SampleKey,
     pub kind: RayKind,
     pub depth: Depth,
 }
 
-/// A ray towards a light, and what arrives if nothing is in the way.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ShadowRay {
-    pub ray: Ray,
-    pub contribution: Vec3,
-    pub node: u32,
+/// Rays that look for surfaces.
+#[derive(Debug, Default)]
+pub(crate) struct Paths {
+    pub rays: Rays,
+    pub paths: Vec<Path>,
 }
 
-impl AsRef<Ray> for PathRay {
-    fn as_ref(&self) -> &Ray {
-        &self.ray
+impl Paths {
+    pub fn push(&mut self, ray: Ray, path: Path) {
+        self.rays.push(ray);
+        self.paths.push(path);
+    }
+
+    fn clear(&mut self) {
+        self.rays.clear();
+        self.paths.clear();
     }
 }
 
-impl AsRef<Ray> for ShadowRay {
-    fn as_ref(&self) -> &Ray {
-        &self.ray
+/// Which camera samples a wave takes: the same ones of several pixels, pixel by pixel.
+#[derive(Debug, Clone)]
+pub(crate) struct Shots<'a> {
+    /// Column and row.
+    pub pixels: &'a [[u32; 2]],
+    pub indices: Range<u32>,
+    /// How many samples these pixels have once the pass is over.
+    pub of: u32,
+}
+
+impl Shots<'_> {
+    /// Pixel and index of every sample.
+    pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], u32)> {
+        self.pixels.iter().flat_map(|&pixel| self.indices.clone().map(move |index| (pixel, index)))
+    }
+
+    pub fn count(&self) -> usize {
+        self.pixels.len() * self.indices.len()
     }
 }
 
-/// Where light is gathered.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Node {
-    /// Light from lights, and from surfaces that shine.
-    pub direct: Vec3,
-    /// Light from child nodes, weighted.
-    pub indirect: Vec3,
-    /// The node that gets this one's light, and how much of it; itself for roots.
-    pub parent: u32,
-    pub weight: f32,
-    /// What the sum is multiplied by; zero where the ray met nothing.
-    pub gain: f32,
+/// Camera samples that are to be traced.
+#[derive(Debug, Default)]
+pub(crate) struct Samples {
+    /// Rays that end before they begin where the lens sees nothing.
+    pub rays: Rays,
+    pub keys: Vec<SampleKey>,
+    /// What each counts in its pixel.
+    pub weights: Vec<f32>,
 }
 
-impl Node {
-    /// The node of camera sample `index`.
-    fn root(index: u32) -> Node {
-        Node { direct: Vec3::ZERO, indirect: Vec3::ZERO, parent: index, weight: 1.0, gain: 0.0 }
+impl Samples {
+    /// Room for exactly `count` samples, for those who write them one by one.
+    pub fn resize(&mut self, count: usize) {
+        self.rays.resize(count);
+        self.rays.skip.clear();
+        self.rays.skip.resize(count);
+        self.keys.resize(count, SampleKey { pixel: 0, index: 0 });
+        self.weights.resize(count, 1.0);
+    }
+
+    /// Writes sample `i`; a ray of `None` sees nothing.
+    pub fn set(&mut self, i: usize, ray: Option<(Vec3, Vec3)>, key: SampleKey, weight: f32) {
+        let (origin, direction) = ray.unwrap_or((Vec3::ZERO, Vec3::Z));
+        self.rays.origin.set(i, origin);
+        self.rays.direction.set(i, direction);
+        self.rays.t_max[i] = if ray.is_some() { f32::INFINITY } else { -1.0 };
+        self.keys[i] = key;
+        self.weights[i] = weight;
     }
 }
 
@@ -107,41 +139,20 @@ impl Seen {
     pub const NOTHING: Seen = Seen { object: Id::NONE.object, normal: Vec3::ZERO };
 }
 
-/// Which sample of which pixel; `slot` is the pixel's place in its tile.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Target {
-    pub pixel: [u32; 2],
-    pub slot: u32,
-    pub index: u32,
-}
-
-/// A camera sample that is to be traced.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct CameraSample {
-    pub origin: Vec3,
-    /// Of unit length; zero where the lens sees nothing.
-    pub direction: Vec3,
-    pub key: SampleKey,
-    /// What it counts in its pixel.
-    pub weight: f32,
-}
-
-/// What comes of a camera sample.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SampleResult {
-    pub color: Vec3,
-    /// 1 where anything was seen, background included.
-    pub coverage: f32,
-    pub seen: Seen,
+/// What comes of the camera samples.
+#[derive(Debug, Default)]
+pub(crate) struct Results {
+    pub colors: Vec<Vec3>,
+    /// Whether anything was seen, background included.
+    pub covered: Vec<bool>,
+    pub seen: Vec<Seen>,
 }
 
 /// Everything that shading leaves behind for the rest of the wave and the next one.
-#[derive(Debug, Default)]
-pub(crate) struct Queues {
-    pub rays: Vec<PathRay>,
-    pub shadows: Vec<ShadowRay>,
-    pub nodes: Vec<Node>,
-    pub seen: Vec<Seen>,
+#[derive(Debug)]
+pub(crate) struct Queues<N> {
+    pub next: Paths,
+    pub nodes: Vec<N>,
     pub stats: Stats,
 }
 
@@ -154,209 +165,216 @@ pub(crate) struct World {
 }
 
 /// The hits of one wave that share a material.
+#[derive(Clone, Copy)]
 pub(crate) struct Batch<'a> {
     pub geometry: &'a Geometry,
     pub material: &'a Material,
-    /// Positions in `rays` and `hits`.
+    /// Positions in `rays`, `paths` and `hits`.
     pub members: &'a [u32],
-    pub rays: &'a [PathRay],
-    pub hits: &'a [Hit],
+    pub rays: &'a Rays,
+    pub paths: &'a [Path],
+    pub hits: &'a Hits,
+    /// By camera sample.
+    pub keys: &'a [SampleKey],
 }
 
-impl<'a> Batch<'a> {
-    /// The batch in pieces of up to `size` members.
-    pub fn chunks(&self, size: usize) -> impl Iterator<Item = Batch<'a>> + use<'a> {
-        let Batch { geometry, material, members, rays, hits } = *self;
-        members.chunks(size).map(move |members| Batch { geometry, material, members, rays, hits })
-    }
-
-    /// The members with their rays and hits.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&'a PathRay, &'a Hit)> + use<'a> {
-        let (rays, hits) = (self.rays, self.hits);
-        self.members.iter().map(move |&i| (&rays[i as usize], &hits[i as usize]))
-    }
-
+impl Batch<'_> {
     /// The ray of a member.
-    pub fn ray(&self, member: usize) -> &'a Ray {
-        &self.rays[self.members[member] as usize].ray
+    #[inline]
+    pub fn ray(&self, member: usize) -> Ray {
+        self.rays.get(self.members[member] as usize)
+    }
+
+    /// The hit of a member.
+    #[inline]
+    pub fn hit(&self, member: usize) -> Hit {
+        self.hits.get(self.members[member] as usize)
+    }
+
+    /// The path of a member.
+    #[inline]
+    pub fn path(&self, member: usize) -> &Path {
+        &self.paths[self.members[member] as usize]
     }
 }
 
 /// What a dialect does with hits, misses and gathered light.
 pub(crate) trait Rules: Sync {
-    /// Shades a batch: adds light to nodes, queues shadow and secondary rays.
-    fn shade(&self, batch: &Batch<'_>, textures: &mut TextureBatch, colors: &mut Vec<Vec3>, queues: &mut Queues);
-
-    /// Light along a ray that met nothing, and whether the camera takes it for a surface.
-    fn miss(&self, ray: &PathRay) -> Option<Vec3>;
-
-    /// The light of a node whose children are complete.
-    fn finish(&self, node: &Node) -> Vec3;
-
+    /// Where light is gathered; the default is that of a camera sample that has met nothing yet.
+    type Node: Copy + Default;
+    /// One thread's room for shading, used again and again.
+    type Room: Default;
     /// The smallest distance of a hit.
-    fn t_min(&self) -> f32;
+    const T_MIN: f32;
+
+    /// Shades a batch: adds light to nodes, queues secondary rays.
+    fn shade(&self, batch: &Batch<'_>, room: &mut Self::Room, queues: &mut Queues<Self::Node>);
+
+    /// Adds what a ray that met nothing brings, and says whether the camera takes that for a surface.
+    fn miss(&self, path: &Path, direction: Vec3, node: &mut Self::Node) -> bool;
+
+    /// What the camera sees at a hit: the normal.
+    fn seen(&self, geometry: &Geometry, rays: &Rays, hits: &Hits, i: usize) -> Vec3;
+
+    /// The light of the first `samples` nodes.
+    fn resolve(&self, nodes: &mut [Self::Node], samples: usize, colors: &mut Vec<Vec3>);
 }
 
 /// One thread's room for waves, used again and again.
-#[derive(Default)]
-pub(crate) struct Workspace {
-    rays: Vec<PathRay>,
-    hits: Vec<Hit>,
-    blocked: Vec<bool>,
+pub(crate) struct Workspace<R: Rules> {
+    current: Paths,
+    hits: Hits,
     /// Positions of hits, sorted by material, and where each material starts.
     sorted: Vec<u32>,
     starts: Vec<u32>,
-    next: Vec<u32>,
     materials: Vec<u32>,
-    textures: TextureBatch,
-    colors: Vec<Vec3>,
-    /// What the camera samples are covered by.
-    coverage: Vec<f32>,
+    /// Positions of rays that met nothing.
+    misses: Vec<u32>,
+    room: R::Room,
     scratch: Scratch,
-    pub queues: Queues,
+    pub queues: Queues<R::Node>,
+    pub results: Results,
 }
 
-/// Marks a miss among the materials of a wave.
-const MISS: u32 = u32::MAX;
-
-impl Workspace {
-    /// Traces camera samples to their end; `results` gets one entry each, in order.
-    pub fn trace<R: Rules>(
-        &mut self,
-        world: &World,
-        rules: &R,
-        samples: &[CameraSample],
-        results: &mut Vec<SampleResult>,
-    ) {
-        self.start(rules, samples);
-        let mut first = true;
-        while !self.queues.rays.is_empty() {
-            std::mem::swap(&mut self.rays, &mut self.queues.rays);
-            self.queues.rays.clear();
-            self.count_rays();
-            world.geometry.closest(&self.rays, &mut self.hits, &mut self.scratch);
-            self.sort_by_material(world);
-            for (i, ray) in self.rays.iter().enumerate() {
-                if self.materials[i] != MISS {
-                    if first {
-                        self.coverage[ray.node as usize] = 1.0;
-                    }
-                } else if ray.ray.t_max > 0.0
-                    && let Some(light) = rules.miss(ray)
-                {
-                    self.queues.nodes[ray.node as usize].direct += ray.weight * light;
-                    if first {
-                        self.coverage[ray.node as usize] = 1.0;
-                    }
-                }
-            }
-            self.shade(world, rules);
-            self.light(world);
-            first = false;
+impl<R: Rules> Default for Workspace<R> {
+    fn default() -> Self {
+        Workspace {
+            current: Paths::default(),
+            hits: Hits::default(),
+            sorted: Vec::new(),
+            starts: Vec::new(),
+            materials: Vec::new(),
+            misses: Vec::new(),
+            room: R::Room::default(),
+            scratch: Scratch::default(),
+            queues: Queues { next: Paths::default(), nodes: Vec::new(), stats: Stats::default() },
+            results: Results::default(),
         }
-        self.resolve(rules, results);
+    }
+}
+
+impl<R: Rules> Workspace<R> {
+    /// Traces camera samples to their end; `results` gets one entry each, in order. What is seen is noted only if the
+    /// caller `looks`.
+    pub fn trace(&mut self, world: &World, rules: &R, samples: &mut Samples, looks: bool) {
+        self.start(samples);
+        let mut first = true;
+        while !self.queues.next.rays.is_empty() {
+            std::mem::swap(&mut self.current, &mut self.queues.next);
+            self.queues.next.clear();
+            self.count_rays();
+            world.geometry.closest(self.current.rays.view(R::T_MIN), &mut self.hits, &mut self.scratch);
+            self.sort_by_material(world);
+            if first && looks {
+                self.look(world, rules);
+            }
+            self.miss(rules, first);
+            self.shade(world, rules, &samples.keys);
+            if first {
+                // The rows go back to where they came from.
+                std::mem::swap(&mut self.current.rays, &mut samples.rays);
+                first = false;
+            }
+        }
+        rules.resolve(&mut self.queues.nodes, samples.keys.len(), &mut self.results.colors);
     }
 
     /// Queues the camera rays.
-    fn start<R: Rules>(&mut self, rules: &R, samples: &[CameraSample]) {
-        self.coverage.clear();
-        self.coverage.resize(samples.len(), 0.0);
-        let queues = &mut self.queues;
-        queues.rays.clear();
-        queues.shadows.clear();
-        queues.nodes.clear();
-        queues.nodes.extend((0..samples.len() as u32).map(Node::root));
-        queues.seen.clear();
-        queues.seen.resize(samples.len(), Seen::NOTHING);
-        queues.stats.samples += samples.len() as u64;
-        let t_min = rules.t_min();
-        queues.rays.extend(samples.iter().zip(0..).map(|(sample, node)| {
-            let CameraSample { origin, direction, key, .. } = *sample;
-            // No direction: a ray that ends before it begins.
-            let t_max = if direction == Vec3::ZERO { -1.0 } else { f32::INFINITY };
-            let ray = Ray { origin, direction, t_min, t_max, skip: Id::NONE };
-            PathRay { ray, weight: Vec3::ONE, node, key, kind: RayKind::Camera, depth: Depth::default() }
-        }));
+    fn start(&mut self, samples: &mut Samples) {
+        let count = samples.keys.len();
+        let Workspace { queues: Queues { next, nodes, stats }, results, .. } = self;
+        next.clear();
+        std::mem::swap(&mut next.rays, &mut samples.rays);
+        let path = Path { weight: Vec3::ONE, node: 0, kind: RayKind::Camera, depth: Depth::default() };
+        next.paths.extend((0..count as u32).map(|node| Path { node, ..path }));
+        nodes.clear();
+        nodes.resize(count, R::Node::default());
+        results.covered.clear();
+        results.covered.resize(count, true);
+        results.seen.clear();
+        stats.samples += count as u64;
     }
 
     fn count_rays(&mut self) {
         let stats = &mut self.queues.stats;
-        for ray in &self.rays {
-            match ray.kind {
-                RayKind::Camera => stats.camera_rays += 1,
-                RayKind::Reflection | RayKind::Glossy => stats.reflection_rays += 1,
-                RayKind::Refraction => stats.refraction_rays += 1,
-            }
+        let paths = &self.current.paths;
+        if let [Path { kind: RayKind::Camera, .. }, ..] = paths[..] {
+            stats.camera_rays += paths.len() as u64;
+            return;
         }
+        let refracted = paths.iter().filter(|path| path.kind == RayKind::Refraction).count() as u64;
+        stats.refraction_rays += refracted;
+        stats.reflection_rays += paths.len() as u64 - refracted;
     }
 
-    /// Counting sort of the hits by material; misses are left out.
+    /// Counting sort of the hits by material; misses are set apart.
     fn sort_by_material(&mut self, world: &World) {
+        let Workspace { hits, sorted, starts, materials, misses, .. } = self;
         let count = world.materials.len();
-        self.starts.clear();
-        self.starts.resize(count + 1, 0);
-        self.materials.clear();
-        for hit in &self.hits {
-            let material = if hit.id == Id::NONE { MISS } else { world.geometry.material(hit) };
-            self.materials.push(material);
-            if material != MISS {
-                self.starts[material as usize + 1] += 1;
+        starts.clear();
+        starts.resize(count + 2, 0);
+        misses.clear();
+        world.geometry.materials(hits, count as u32, materials);
+        // Counted two places on, so that placing them leaves every material's start one place on.
+        for &material in &*materials {
+            if let Some(start) = starts.get_mut(material as usize + 2) {
+                *start += 1;
             }
         }
-        for material in 0..count {
-            self.starts[material + 1] += self.starts[material];
+        for material in 1..=count {
+            starts[material + 1] += starts[material];
         }
-        self.next.clone_from(&self.starts);
-        self.sorted.clear();
-        self.sorted.resize(self.starts[count] as usize, 0);
-        for (i, &material) in self.materials.iter().enumerate() {
-            if material != MISS {
-                let at = &mut self.next[material as usize];
-                self.sorted[*at as usize] = i as u32;
-                *at += 1;
-            }
-        }
-    }
-
-    fn shade<R: Rules>(&mut self, world: &World, rules: &R) {
-        for (index, material) in world.materials.iter().enumerate() {
-            let range = self.starts[index] as usize..self.starts[index + 1] as usize;
-            if range.is_empty() {
+        sorted.resize(starts[count + 1] as usize, 0);
+        for (&material, i) in materials.iter().zip(0..) {
+            if material as usize == count {
+                misses.push(i);
                 continue;
             }
-            let members = &self.sorted[range];
-            let (geometry, rays, hits) = (&world.geometry, &self.rays, &self.hits);
-            let batch = Batch { geometry, material, members, rays, hits };
-            self.colors.clear();
-            rules.shade(&batch, &mut self.textures, &mut self.colors, &mut self.queues);
+            let at = &mut starts[material as usize + 1];
+            sorted[*at as usize] = i;
+            *at += 1;
         }
     }
 
-    /// Traces the shadow rays and hands out what arrives.
-    fn light(&mut self, world: &World) {
-        let queues = &mut self.queues;
-        queues.stats.shadow_rays += queues.shadows.len() as u64;
-        world.geometry.occluded(&queues.shadows, &mut self.blocked, &mut self.scratch);
-        for (shadow, &blocked) in queues.shadows.iter().zip(&self.blocked) {
-            if !blocked {
-                queues.nodes[shadow.node as usize].direct += shadow.contribution;
+    /// Notes what the camera sees.
+    fn look(&mut self, world: &World, rules: &R) {
+        let Workspace { current, hits, materials, results, .. } = self;
+        let miss = world.materials.len() as u32;
+        results.seen.extend(materials.iter().enumerate().map(|(i, &material)| {
+            if material == miss {
+                return Seen::NOTHING;
+            }
+            let normal = rules.seen(&world.geometry, &current.rays, hits, i);
+            Seen { object: hits.id.object[i], normal }
+        }));
+    }
+
+    fn miss(&mut self, rules: &R, first: bool) {
+        let Workspace { current: Paths { rays, paths }, misses, queues, results, .. } = self;
+        for &i in &*misses {
+            let (i, path) = (i as usize, &paths[i as usize]);
+            let looks = rays.t_max[i] > 0.0;
+            let node = path.node as usize;
+            let covered = looks && rules.miss(path, rays.direction.get(i), &mut queues.nodes[node]);
+            if first {
+                results.covered[node] = covered;
             }
         }
-        queues.shadows.clear();
     }
 
-    /// Hands light from children to parents, and from roots to the results.
-    fn resolve<R: Rules>(&mut self, rules: &R, results: &mut Vec<SampleResult>) {
-        let (nodes, coverage) = (&mut self.queues.nodes, &self.coverage);
-        for i in (coverage.len()..nodes.len()).rev() {
-            let node = nodes[i];
-            nodes[node.parent as usize].indirect += node.weight * rules.finish(&node);
+    fn shade(&mut self, world: &World, rules: &R, keys: &[SampleKey]) {
+        let Workspace { current: Paths { rays, paths }, hits, sorted, starts, room, queues, .. } = self;
+        let mut from = 0;
+        for (material, &end) in world.materials.iter().zip(&starts[1..]) {
+            let members = &sorted[from..end as usize];
+            from = end as usize;
+            if !members.is_empty() {
+                rules.shade(
+                    &Batch { geometry: &world.geometry, material, members, rays, paths, hits, keys },
+                    room,
+                    queues,
+                );
+            }
         }
-        results.clear();
-        results.extend((0..coverage.len()).map(|i| SampleResult {
-            color: rules.finish(&nodes[i]),
-            coverage: coverage[i],
-            seen: self.queues.seen[i],
-        }));
     }
 }

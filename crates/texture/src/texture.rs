@@ -147,8 +147,10 @@ impl Texture {
     #[inline]
     pub fn color(&self, coefficient: f32) -> [f32; 3] {
         let mix = |i: usize| coefficient * self.initial[i] + (1.0 - coefficient) * self.last[i];
-        // NaN becomes 0.
-        std::array::from_fn(|i| if mix(i) > 0.0 { mix(i).min(1.0) } else { 0.0 })
+        // `max` makes 0 of NaN, which `clamp` would keep.
+        #[expect(clippy::manual_clamp)]
+        let limit = |value: f32| value.max(0.0).min(1.0);
+        [limit(mix(0)), limit(mix(1)), limit(mix(2))]
     }
 
     /// The colours at many points of the texture's space. See [`Texture::evaluate`] and [`Texture::color`].

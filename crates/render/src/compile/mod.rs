@@ -17,7 +17,7 @@ use crate::options::{CompileOptions, RenderOptions};
 use crate::report::{Grid, Report, ReportCamera, ReportLight};
 use crate::sampler::SampleKey;
 use crate::sunflow::Sunflow;
-use crate::wave::{CameraSample, Target, World};
+use crate::wave::{Samples, Seen, Shots, Workspace, World};
 
 /// A scene ready to render: immutable and valid.
 #[derive(Debug)]
@@ -72,31 +72,31 @@ impl CompiledScene {
         }
     }
 
-    /// Appends samples of pixels that are to have `end` of them each.
-    pub(crate) fn camera_samples(&self, targets: &[Target], end: u32, seed: u64, samples: &mut Vec<CameraSample>) {
+    /// Aims the samples of a wave.
+    pub(crate) fn aim(&self, shots: &Shots<'_>, seed: u64, samples: &mut Samples) {
         match &self.meaning {
             &Meaning::Sunflow { ref camera, ref filter, jitter, .. } => {
-                samples.extend(targets.iter().map(|&Target { pixel: [x, y], index, .. }| {
+                samples.resize(shots.count());
+                for (i, ([x, y], index)) in shots.iter().enumerate() {
                     let key = SampleKey::new(x, y, index, seed);
                     // A single sample stands for the pixel's centre. Several lie alike in all pixels, so that edges
                     // come out smooth; with `jitter`, every pixel has its own.
-                    let ([dx, dy], weight) = match (end, jitter) {
+                    let ([dx, dy], weight) = match (shots.of, jitter) {
                         (1, _) => ([0.0; 2], 1.0),
                         (_, false) => filter.sample(SampleKey::shared(index, seed).pair(0)),
                         (_, true) => filter.sample(key.pair(0)),
                     };
                     let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
                     let ray = camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, lens);
-                    let (origin, direction) = ray.unwrap_or_default();
-                    CameraSample { origin, direction, key, weight }
-                }));
+                    samples.set(i, ray, key, weight);
+                }
             }
             Meaning::Report { rules } => {
                 let grid = match self.sampling {
                     Sampling::Report { edge, repeats } => Grid { edge, repeats },
-                    _ => Grid { edge: 1, repeats: end },
+                    _ => Grid { edge: 1, repeats: shots.of },
                 };
-                rules.camera.samples(grid, targets, seed, samples);
+                rules.camera.samples(grid, shots, seed, samples);
             }
         }
     }
@@ -258,22 +258,19 @@ fn note_darkness(scene: &Scene, compiled: &CompiledScene, diagnostics: &mut Diag
     if rules.lights.is_empty() || diagnostics.has_errors() {
         return;
     }
-    let samples: Vec<CameraSample> = (0..PROBE[0] * PROBE[1])
-        .map(|i| {
-            let at = |k: usize, cell: u32| (cell as f32 + 0.5) / PROBE[k] as f32 * compiled.size[k] as f32;
-            let ray = camera.ray(at(0, i % PROBE[0]), at(1, i / PROBE[0]), [0.5; 2]);
-            let (origin, direction) = ray.unwrap_or_default();
-            let key = SampleKey::new(i, 0, 0, RenderOptions::default().seed);
-            CameraSample { origin, direction, key, weight: 1.0 }
-        })
-        .collect();
-    let mut results = Vec::new();
-    crate::wave::Workspace::default().trace(&compiled.world, rules, &samples, &mut results);
-    let mut lit: Vec<f32> = results
-        .iter()
-        .filter(|result| result.seen.object != crate::wave::Seen::NOTHING.object)
-        .map(|result| result.color.max_element())
-        .collect();
+    let mut samples = Samples::default();
+    samples.resize((PROBE[0] * PROBE[1]) as usize);
+    for i in 0..PROBE[0] * PROBE[1] {
+        let at = |k: usize, cell: u32| (cell as f32 + 0.5) / PROBE[k] as f32 * compiled.size[k] as f32;
+        let ray = camera.ray(at(0, i % PROBE[0]), at(1, i / PROBE[0]), [0.5; 2]);
+        samples.set(i as usize, ray, SampleKey::new(i, 0, 0, RenderOptions::default().seed), 1.0);
+    }
+    let mut workspace = Workspace::default();
+    workspace.trace(&compiled.world, rules, &mut samples, true);
+    let results = &workspace.results;
+    let seen = results.seen.iter().map(|seen| seen.object != Seen::NOTHING.object);
+    let mut lit: Vec<f32> =
+        results.colors.iter().zip(seen).filter(|&(_, seen)| seen).map(|(color, _)| color.max_element()).collect();
     lit.sort_by(f32::total_cmp);
     // The brightest twentieth of what is seen decides.
     let Some(bright) = lit.get(lit.len() * 19 / 20) else { return };

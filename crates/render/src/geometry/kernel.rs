@@ -8,8 +8,6 @@
 //! so that no ray slips between two neighbours. Spheres follow [Haines, Günther, Akenine-Möller 2019] "Precision
 //! Improvements for Ray/Sphere Intersection".
 
-use glam::Vec3;
-
 use super::simd::{Simd, Vec3x8};
 
 /// One ray in all lanes, or a ray in each.
@@ -28,16 +26,13 @@ pub(crate) struct Crossing<S> {
     pub v: S,
 }
 
-/// One over a direction, component by component; never infinite, because 0 × ∞ would be nothing where the origin lies
-/// on a side of a box.
+/// One over a component of directions; never infinite, because 0 × ∞ would be nothing where the origin lies on a side
+/// of a box.
 #[inline(always)]
-pub(crate) fn inverse(direction: Vec3) -> Vec3 {
-    Vec3::new(finite_inverse(direction.x), finite_inverse(direction.y), finite_inverse(direction.z))
-}
-
-#[inline(always)]
-fn finite_inverse(d: f32) -> f32 {
-    1.0 / if d.abs() < 1e-18 { 1e-18f32.copysign(d) } else { d }
+pub(crate) fn inverse<S: Simd>(d: S) -> S {
+    let tiny = S::splat(1e-18);
+    let magnitude = d.max(S::splat(0.0).sub(d));
+    S::splat(1.0).div(magnitude.select_lt(tiny, tiny.copysign(d), d))
 }
 
 /// Where rays enter boxes and where they leave them. `near` and `far` are the sides that a ray of these signs crosses

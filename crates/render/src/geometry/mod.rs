@@ -7,6 +7,7 @@ mod bvh;
 mod kernel;
 mod packet;
 mod plan;
+mod rays;
 pub(crate) mod simd;
 mod surface;
 mod traverse;
@@ -19,7 +20,8 @@ use glam::{Vec2, Vec3};
 use crate::affine::Affine;
 use packet::Packet;
 pub(crate) use plan::{Placement, Plan};
-pub(crate) use surface::Surface;
+pub(crate) use rays::{Hits, Ids, RayView, Rays, Rows};
+pub(crate) use surface::{Surface, Surfaces};
 pub(crate) use traverse::Scratch;
 
 /// A primitive: which object, and which of its triangles (0 for everything else).
@@ -163,6 +165,8 @@ pub(crate) struct Geometry {
     pub planes: Vec<PlaneShape>,
     pub meshes: Vec<MeshShape>,
     pub objects: Vec<Object>,
+    /// See [`Geometry::only_materials`].
+    only_material: Vec<u32>,
 }
 
 impl Geometry {
@@ -173,83 +177,62 @@ impl Geometry {
     }
 
     /// The first hit of every ray.
-    pub fn closest<R: AsRef<Ray>>(&self, rays: &[R], hits: &mut Vec<Hit>, scratch: &mut Scratch) {
-        hits.resize(rays.len(), Hit::NONE);
+    pub fn closest(&self, rays: RayView<'_>, hits: &mut Hits, scratch: &mut Scratch) {
+        hits.resize(rays.len());
         simd::run(Closest { geometry: self, rays, hits, scratch });
     }
 
-    /// For every shadow ray, whether something lies before its end.
-    pub fn occluded<R: AsRef<Ray>>(&self, rays: &[R], blocked: &mut Vec<bool>, scratch: &mut Scratch) {
+    /// For every shadow ray, whether something lies before its end; a ray that ends before it begins counts as blocked.
+    pub fn occluded(&self, rays: RayView<'_>, blocked: &mut Vec<bool>, scratch: &mut Scratch) {
         blocked.resize(rays.len(), false);
         simd::run(Occluded { geometry: self, rays, blocked, scratch });
-    }
-
-    /// Improves `hit` by all that one ray meets.
-    #[inline(always)]
-    fn trace<S: simd::Simd, const ANY: bool>(&self, ray: &Ray, hit: &mut Hit, scratch: &mut Scratch) {
-        for plane in &self.planes {
-            plane.intersect(ray, hit);
-        }
-        if !ANY || hit.id == Id::NONE {
-            let root = (0.0, self.tree.root);
-            self.tree.trace::<S, ANY>(root, ray, hit, &mut scratch.outer, &mut scratch.inner);
-        }
     }
 }
 
 /// [`Geometry::closest`] as a kernel.
-struct Closest<'a, R> {
+struct Closest<'a> {
     geometry: &'a Geometry,
-    rays: &'a [R],
-    hits: &'a mut [Hit],
+    rays: RayView<'a>,
+    hits: &'a mut Hits,
     scratch: &'a mut Scratch,
 }
 
-impl<R: AsRef<Ray>> simd::Kernel for Closest<'_, R> {
+impl simd::Kernel for Closest<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Closest { geometry, rays, hits, scratch } = self;
-        let ((packets, rest), (packet_hits, rest_hits)) = (rays.as_chunks(), hits.as_chunks_mut());
-        for (rays, hits) in packets.iter().zip(packet_hits) {
-            let mut packet = Packet::<_, S, false>::new(rays);
+        for start in (0..rays.len()).step_by(rays::GROUP) {
+            let mut packet = Packet::<S, false>::new(rays, start);
             packet.planes(&geometry.planes);
             packet.trace(&geometry.tree, scratch);
-            *hits = packet.hits();
-        }
-        for (ray, hit) in rest.iter().zip(rest_hits) {
-            *hit = Hit { t: ray.as_ref().t_max, ..Hit::NONE };
-            geometry.trace::<S, false>(ray.as_ref(), hit, scratch);
+            packet.store(hits);
         }
     }
 }
 
 /// [`Geometry::occluded`] as a kernel.
-struct Occluded<'a, R> {
+struct Occluded<'a> {
     geometry: &'a Geometry,
-    rays: &'a [R],
+    rays: RayView<'a>,
     blocked: &'a mut [bool],
     scratch: &'a mut Scratch,
 }
 
-impl<R: AsRef<Ray>> simd::Kernel for Occluded<'_, R> {
+impl simd::Kernel for Occluded<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Occluded { geometry, rays, blocked, scratch } = self;
-        let ((packets, rest), (packet_blocked, rest_blocked)) = (rays.as_chunks(), blocked.as_chunks_mut());
-        for (rays, blocked) in packets.iter().zip(packet_blocked) {
-            let mut packet = Packet::<_, S, true>::new(rays);
-            packet.planes(&geometry.planes);
-            packet.trace(&geometry.tree, scratch);
-            *blocked = packet.blocked();
-        }
-        for (ray, blocked) in rest.iter().zip(rest_blocked) {
-            let mut hit = Hit { t: ray.as_ref().t_max, ..Hit::NONE };
-            geometry.trace::<S, true>(ray.as_ref(), &mut hit, scratch);
-            *blocked = hit.id != Id::NONE;
+        for start in (0..rays.len()).step_by(rays::GROUP) {
+            let mut packet = Packet::<S, true>::new(rays, start);
+            if !packet.is_dead() {
+                packet.planes(&geometry.planes);
+                packet.trace(&geometry.tree, scratch);
+            }
+            packet.store_blocked(blocked);
         }
     }
 }
@@ -257,14 +240,5 @@ impl<R: AsRef<Ray>> simd::Kernel for Occluded<'_, R> {
 impl PlaneShape {
     fn id(&self) -> Id {
         Id { object: self.object, index: 0 }
-    }
-
-    /// Improves `hit` by where `ray` crosses the plane.
-    #[inline(always)]
-    fn intersect(&self, ray: &Ray, hit: &mut Hit) {
-        let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
-        if t > ray.t_min && ray.skip != self.id() {
-            hit.improve(Hit { t, u: 0.0, v: 0.0, id: self.id() });
-        }
     }
 }

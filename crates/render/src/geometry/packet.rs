@@ -5,12 +5,11 @@ use glam::Vec3;
 
 use super::bvh::{Aabb, Child, Kind, Node};
 use super::kernel::{self, Crossing, Lanes};
+use super::rays::{GROUP as SIZE, Hits, RayView, eight};
 use super::simd::{Simd, Vec3x8};
 use super::traverse::{STACK, Scratch, SphereBlock, Tree, TriangleBlock};
-use super::{Hit, Id, PlaneShape, Ray};
+use super::{Hit, Id, PlaneShape};
 
-/// Rays in a packet.
-pub(crate) const SIZE: usize = 8;
 /// So few rays go on one by one: alone they test eight boxes in the time in which a packet tests one or two.
 const FEW: u32 = 1;
 /// All rays.
@@ -33,15 +32,56 @@ pub(crate) fn stack() -> Stack {
 }
 
 /// Eight rays and the best that each has met so far.
-pub(crate) struct Packet<'a, R, S, const ANY: bool> {
-    rays: &'a [R; SIZE],
+pub(crate) struct Packet<'a, S, const ANY: bool> {
+    rays: RayView<'a>,
+    /// The first of the eight.
+    start: usize,
     lanes: Lanes<S>,
     /// Rays that are still looking: with `ANY`, a ray stops at the first hit.
     alive: u32,
+    /// Rays that start at a primitive and must not meet it.
+    leaving: u32,
+    skip: Names<S>,
     t: S,
     u: S,
     v: S,
-    ids: [Id; SIZE],
+    ids: Names<S>,
+}
+
+/// An [`Id`] in each lane, as bits.
+#[derive(Clone, Copy)]
+struct Names<S> {
+    object: S,
+    index: S,
+}
+
+impl<S: Simd> Names<S> {
+    #[inline(always)]
+    fn splat(id: Id) -> Self {
+        Names { object: S::splat(f32::from_bits(id.object)), index: S::splat(f32::from_bits(id.index)) }
+    }
+
+    #[inline(always)]
+    fn load(object: &[u32], index: &[u32], start: usize) -> Self {
+        let none = u32::MAX;
+        Names { object: S::load_bits(&eight(object, start, none)), index: S::load_bits(&eight(index, start, none)) }
+    }
+
+    #[inline(always)]
+    fn store(self) -> [[u32; SIZE]; 2] {
+        [self.object.store_bits(), self.index.store_bits()]
+    }
+
+    /// Lanes that hold the same name.
+    #[inline(always)]
+    fn same(self, other: Self) -> u32 {
+        self.object.same_bits(other.object) & self.index.same_bits(other.index)
+    }
+
+    #[inline(always)]
+    fn select(mask: u32, yes: Self, no: Self) -> Self {
+        Names { object: S::select(mask, yes.object, no.object), index: S::select(mask, yes.index, no.index) }
+    }
 }
 
 /// What the boxes need to know of a packet whose directions have the same signs.
@@ -62,38 +102,51 @@ struct Hull<S> {
     far_inverse: Vec3x8<S>,
 }
 
-impl<'a, R: AsRef<Ray>, S: Simd, const ANY: bool> Packet<'a, R, S, ANY> {
+impl<'a, S: Simd, const ANY: bool> Packet<'a, S, ANY> {
+    /// The eight rays from `start` on. Past the end there are rays that look for nothing, and go where the last one
+    /// goes, so that the packet stays as coherent as it is.
     #[inline(always)]
-    pub fn new(rays: &'a [R; SIZE]) -> Self {
-        let mut origin = [[0.0; SIZE]; 3];
-        let mut direction = [[0.0; SIZE]; 3];
-        let mut ends = [[0.0; SIZE]; 2];
-        for i in 0..SIZE {
-            let ray = rays[i].as_ref();
-            for axis in 0..3 {
-                origin[axis][i] = ray.origin[axis];
-                direction[axis][i] = ray.direction[axis];
-            }
-            ends[0][i] = ray.t_min;
-            ends[1][i] = ray.t_max;
+    pub fn new(rays: RayView<'a>, start: usize) -> Self {
+        let (zero, t) = (S::splat(0.0), S::load(&eight(rays.t_max, start, -1.0)));
+        let (origin, direction) = (rays.origin.group(start), rays.direction.group(start));
+        let lanes = Lanes { origin, direction, t_min: S::splat(rays.t_min) };
+        let (skip, none) = (Names::load(&rays.skip.object, &rays.skip.index, start), Names::splat(Id::NONE));
+        let (alive, leaving) = (zero.le(t), ALL & !skip.same(none));
+        Packet { rays, start, lanes, alive, leaving, skip, t, u: zero, v: zero, ids: none }
+    }
+
+    /// Whether no ray of the packet looks for anything.
+    #[inline(always)]
+    pub fn is_dead(&self) -> bool {
+        self.alive == 0
+    }
+
+    /// Writes what the rays have met.
+    #[inline(always)]
+    pub fn store(&self, hits: &mut Hits) {
+        let start = self.start;
+        let [object, index] = self.ids.store();
+        put(self.t.store(), &mut hits.t[start..]);
+        put(self.u.store(), &mut hits.u[start..]);
+        put(self.v.store(), &mut hits.v[start..]);
+        put(object, &mut hits.id.object[start..]);
+        put(index, &mut hits.id.index[start..]);
+    }
+
+    /// Writes which rays have met anything, or have not looked.
+    #[inline(always)]
+    pub fn store_blocked(&self, blocked: &mut [bool]) {
+        for (i, blocked) in blocked[self.start..].iter_mut().take(SIZE).enumerate() {
+            *blocked = self.alive >> i & 1 == 0;
         }
-        let lanes =
-            Lanes { origin: Vec3x8::load(&origin), direction: Vec3x8::load(&direction), t_min: S::load(&ends[0]) };
-        let zero = S::splat(0.0);
-        Packet { rays, lanes, alive: ALL, t: S::load(&ends[1]), u: zero, v: zero, ids: [Id::NONE; SIZE] }
     }
 
-    /// What the rays have met.
+    /// What ray `i` has met.
     #[inline(always)]
-    pub fn hits(&self) -> [Hit; SIZE] {
+    fn hit(&self, i: usize) -> Hit {
+        let [object, index] = self.ids.store();
         let (t, u, v) = (self.t.store(), self.u.store(), self.v.store());
-        std::array::from_fn(|i| Hit { t: t[i], u: u[i], v: v[i], id: self.ids[i] })
-    }
-
-    /// Which rays have met anything.
-    #[inline(always)]
-    pub fn blocked(&self) -> [bool; SIZE] {
-        std::array::from_fn(|i| self.alive >> i & 1 == 0)
+        Hit { t: t[i], u: u[i], v: v[i], id: Id { object: object[i], index: index[i] } }
     }
 
     /// Goes through the tree.
@@ -204,22 +257,25 @@ impl<'a, R: AsRef<Ray>, S: Simd, const ANY: bool> Packet<'a, R, S, ANY> {
     /// Sends the `active` rays on without the others.
     #[inline(always)]
     fn alone(&mut self, tree: &Tree, child: Child, active: u32, near: [f32; SIZE], scratch: &mut Scratch) {
-        let mut hits = self.hits();
         let mut rest = active & self.alive;
         while rest != 0 {
             let i = rest.trailing_zeros() as usize & 7;
             rest &= rest - 1;
-            let from = (near[i], child);
-            tree.trace::<S, ANY>(from, self.rays[i].as_ref(), &mut hits[i], &mut scratch.outer, &mut scratch.inner);
-            if ANY && hits[i].id != Id::NONE {
+            let (from, known) = ((near[i], child), self.hit(i));
+            let mut hit = known;
+            tree.trace::<S, ANY>(
+                from,
+                &self.rays.get(self.start + i),
+                &mut hit,
+                &mut scratch.outer,
+                &mut scratch.inner,
+            );
+            if hit.id == known.id {
+            } else if ANY {
                 self.alive &= !(1 << i);
+            } else {
+                self.set(1 << i, [hit.t, hit.u, hit.v].map(S::splat), hit.id);
             }
-        }
-        if !ANY {
-            self.ids = hits.map(|hit| hit.id);
-            self.t = S::load(&hits.map(|hit| hit.t));
-            self.u = S::load(&hits.map(|hit| hit.u));
-            self.v = S::load(&hits.map(|hit| hit.v));
         }
     }
 
@@ -243,41 +299,40 @@ impl<'a, R: AsRef<Ray>, S: Simd, const ANY: bool> Packet<'a, R, S, ANY> {
         if mask == 0 {
             return;
         }
-        // Rays that skip this primitive, or have met a better one just as far away.
-        let closer = crossing.t.lt(self.t);
-        let mut rest = mask;
-        while rest != 0 {
-            let i = rest.trailing_zeros() as usize & 7;
-            rest &= rest - 1;
-            if self.rays[i].as_ref().skip == id || closer >> i & 1 == 0 && !id.precedes(self.ids[i]) {
-                mask &= !(1 << i);
-            } else if !ANY {
-                self.ids[i] = id;
-            }
+        if mask & self.leaving != 0 {
+            mask &= !self.skip.same(Names::splat(id));
         }
         if ANY {
             self.alive &= !mask;
-        } else {
-            self.t = S::select(mask, crossing.t, self.t);
-            self.u = S::select(mask, crossing.u, self.u);
-            self.v = S::select(mask, crossing.v, self.v);
+            return;
         }
+        // Rays that have met a better one just as far away.
+        let mut tied = mask & !crossing.t.lt(self.t);
+        while tied != 0 {
+            let i = tied.trailing_zeros() as usize & 7;
+            tied &= tied - 1;
+            if !id.precedes(self.hit(i).id) {
+                mask &= !(1 << i);
+            }
+        }
+        self.set(mask, [crossing.t, crossing.u, crossing.v], id);
+    }
+
+    /// What the rays of `mask` have met.
+    #[inline(always)]
+    fn set(&mut self, mask: u32, [t, u, v]: [S; 3], id: Id) {
+        self.t = S::select(mask, t, self.t);
+        self.u = S::select(mask, u, self.u);
+        self.v = S::select(mask, v, self.v);
+        self.ids = Names::select(mask, Names::splat(id), self.ids);
     }
 
     /// `None` if the directions differ in a sign.
     #[inline(always)]
     fn space(&self) -> Option<Space<S>> {
-        let mut inverses = [[0.0; SIZE]; 3];
-        let (mut origins, mut reciprocals) = (Aabb::EMPTY, Aabb::EMPTY);
-        for (i, ray) in self.rays.iter().enumerate() {
-            let ray = ray.as_ref();
-            let inverse = kernel::inverse(ray.direction);
-            for (axis, row) in inverses.iter_mut().enumerate() {
-                row[i] = inverse[axis];
-            }
-            origins = origins.extend(ray.origin);
-            reciprocals = reciprocals.extend(inverse);
-        }
+        let Vec3x8 { x, y, z } = self.lanes.direction;
+        let inverse = Vec3x8 { x: kernel::inverse(x), y: kernel::inverse(y), z: kernel::inverse(z) };
+        let (origins, reciprocals) = (self.lanes.origin.bounds(), inverse.bounds());
         let sides = reciprocals.min.cmplt(Vec3::ZERO);
         if reciprocals.max.cmplt(Vec3::ZERO) != sides {
             return None;
@@ -289,7 +344,25 @@ impl<'a, R: AsRef<Ray>, S: Simd, const ANY: bool> Packet<'a, R, S, ANY> {
             far_inverse: Vec3x8::splat(Vec3::select(sides, reciprocals.min, reciprocals.max)),
         };
         let sides = [usize::from(sides.test(0)), usize::from(sides.test(1)), usize::from(sides.test(2))];
-        Some(Space { inverse: Vec3x8::load(&inverses), sides, hull })
+        Some(Space { inverse, sides, hull })
+    }
+}
+
+/// As much of a group's row as there is room for.
+#[inline(always)]
+fn put<T: Copy>(values: [T; SIZE], row: &mut [T]) {
+    match row.first_chunk_mut() {
+        Some(chunk) => *chunk = values,
+        None => row.iter_mut().zip(values).for_each(|(row, value)| *row = value),
+    }
+}
+
+impl<S: Simd> Vec3x8<S> {
+    /// The box around eight points.
+    #[inline(always)]
+    fn bounds(self) -> Aabb {
+        let min = Vec3::new(self.x.least(), self.y.least(), self.z.least());
+        Aabb { min, max: Vec3::new(self.x.most(), self.y.most(), self.z.most()) }
     }
 }
 

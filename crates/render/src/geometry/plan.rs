@@ -107,7 +107,15 @@ impl Plan {
         let root = builder.join(&roots);
         let Builder { nodes, triangles, spheres, instances } = builder;
         let tree = Tree { root, nodes, triangles, spheres, instances };
-        Geometry { tree, planes: self.planes, meshes: self.meshes, objects: self.objects }
+        let mut geometry = Geometry {
+            tree,
+            planes: self.planes,
+            meshes: self.meshes,
+            objects: self.objects,
+            only_material: Vec::new(),
+        };
+        geometry.only_material = geometry.only_materials();
+        geometry
     }
 
     /// A tree for each shape that has instances, in the order of `instances`.

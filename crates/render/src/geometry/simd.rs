@@ -10,6 +10,9 @@ pub(crate) trait Simd: Copy {
     fn load(values: &[f32; 8]) -> Self;
     fn splat(value: f32) -> Self;
     fn store(self) -> [f32; 8];
+    /// Lanes that hold bits and no numbers: for [`Simd::select`] and [`Simd::same_bits`].
+    fn load_bits(bits: &[u32; 8]) -> Self;
+    fn store_bits(self) -> [u32; 8];
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
@@ -27,6 +30,12 @@ pub(crate) trait Simd: Copy {
     fn select_lt(self, limit: Self, yes: Self, no: Self) -> Self;
     /// Lane i of `yes` where bit i of `mask` is set, else of `no`.
     fn select(mask: u32, yes: Self, no: Self) -> Self;
+    /// Bit i is set where lane i of `self` has the bits of that of `other`.
+    fn same_bits(self, other: Self) -> u32;
+    /// The smallest lane.
+    fn least(self) -> f32;
+    /// The largest lane.
+    fn most(self) -> f32;
 }
 
 /// Work that is compiled once for each form of [`Simd`]. Its `run` must be `#[inline(always)]`, and so must all that
@@ -82,6 +91,14 @@ impl Simd for Portable {
         self.0
     }
     #[inline(always)]
+    fn load_bits(bits: &[u32; 8]) -> Self {
+        Portable(bits.map(f32::from_bits))
+    }
+    #[inline(always)]
+    fn store_bits(self) -> [u32; 8] {
+        self.0.map(f32::to_bits)
+    }
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         self.zip(other, |a, b| a + b)
     }
@@ -129,6 +146,18 @@ impl Simd for Portable {
     fn select(mask: u32, yes: Self, no: Self) -> Self {
         Portable(std::array::from_fn(|i| if mask >> i & 1 != 0 { yes.0[i] } else { no.0[i] }))
     }
+    #[inline(always)]
+    fn same_bits(self, other: Self) -> u32 {
+        self.mask(other, |a, b| a.to_bits() == b.to_bits())
+    }
+    #[inline(always)]
+    fn least(self) -> f32 {
+        self.0.into_iter().fold(f32::INFINITY, f32::min)
+    }
+    #[inline(always)]
+    fn most(self) -> f32 {
+        self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -159,6 +188,16 @@ mod avx2 {
         fn store(self) -> [f32; 8] {
             let mut out = [0.0; 8];
             unsafe { _mm256_storeu_ps(out.as_mut_ptr(), self.0) };
+            out
+        }
+        #[inline(always)]
+        fn load_bits(bits: &[u32; 8]) -> Self {
+            Avx2(unsafe { _mm256_loadu_ps(bits.as_ptr().cast()) })
+        }
+        #[inline(always)]
+        fn store_bits(self) -> [u32; 8] {
+            let mut out = [0; 8];
+            unsafe { _mm256_storeu_ps(out.as_mut_ptr().cast(), self.0) };
             out
         }
         #[inline(always)]
@@ -214,6 +253,29 @@ mod avx2 {
                 let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
                 let set = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(mask as i32), bits), bits);
                 Avx2(_mm256_blendv_ps(no.0, yes.0, _mm256_castsi256_ps(set)))
+            }
+        }
+        #[inline(always)]
+        fn same_bits(self, other: Self) -> u32 {
+            unsafe {
+                let same = _mm256_cmpeq_epi32(_mm256_castps_si256(self.0), _mm256_castps_si256(other.0));
+                _mm256_movemask_ps(_mm256_castsi256_ps(same)) as u32
+            }
+        }
+        #[inline(always)]
+        fn least(self) -> f32 {
+            unsafe {
+                let four = _mm_min_ps(_mm256_castps256_ps128(self.0), _mm256_extractf128_ps::<1>(self.0));
+                let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+                _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)))
+            }
+        }
+        #[inline(always)]
+        fn most(self) -> f32 {
+            unsafe {
+                let four = _mm_max_ps(_mm256_castps256_ps128(self.0), _mm256_extractf128_ps::<1>(self.0));
+                let two = _mm_max_ps(four, _mm_movehl_ps(four, four));
+                _mm_cvtss_f32(_mm_max_ss(two, _mm_movehdup_ps(two)))
             }
         }
     }

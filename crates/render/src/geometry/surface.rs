@@ -2,7 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{Geometry, Hit, MeshShape, Ray, Shape};
+use super::simd::{self, Simd};
+use super::{Geometry, Hit, Hits, Id, MeshShape, Ray, Rays, Rows, Shape};
 use crate::math;
 
 /// A point on a surface, in the world.
@@ -15,7 +16,82 @@ pub(crate) struct Surface {
     pub normal: Vec3,
 }
 
+/// Surfaces in rows: see [`Surface`] for what they mean.
+#[derive(Debug, Default)]
+pub(crate) struct Surfaces {
+    pub point: Rows,
+    pub geometric: Rows,
+    pub normal: Rows,
+    /// Of spheres, whose points are worked out together; negative elsewhere.
+    radius: Vec<f32>,
+}
+
+impl Surfaces {
+    pub fn resize(&mut self, count: usize) {
+        self.point.resize(count);
+        self.geometric.resize(count);
+        self.normal.resize(count);
+        self.radius.resize(count, -1.0);
+    }
+
+    pub fn get(&self, i: usize) -> Surface {
+        Surface { point: self.point.get(i), geometric: self.geometric.get(i), normal: self.normal.get(i) }
+    }
+}
+
+/// Moves points onto their spheres.
+struct OntoSpheres<'a> {
+    surfaces: &'a mut Surfaces,
+}
+
+impl simd::Kernel for OntoSpheres<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Surfaces { point, geometric, normal, radius } = self.surfaces;
+        let count = radius.len();
+        let ([px, py, pz], [gx, gy, gz]) = (point.slices_mut(count), geometric.slices_mut(count));
+        let [nx, ny, nz] = normal.slices_mut(count);
+        for i in 0..count {
+            // For spheres the point is the centre so far, and the normal the way outward.
+            let scale = 1.0 / (gx[i] * gx[i] + gy[i] * gy[i] + gz[i] * gz[i]).sqrt();
+            let unit = scale > 0.0 && scale < f32::INFINITY;
+            let pick = |n: f32, fallback: f32| if unit { n * scale } else { fallback };
+            let (x, y, z) = (pick(gx[i], 0.0), pick(gy[i], 0.0), pick(gz[i], 1.0));
+            let (r, sphere) = (radius[i], radius[i] >= 0.0);
+            let onto = |center: f32, n: f32| if sphere { center + n * r } else { center };
+            (px[i], py[i], pz[i]) = (onto(px[i], x), onto(py[i], y), onto(pz[i], z));
+            let turn = |n: f32, old: f32| if sphere { n } else { old };
+            (gx[i], gy[i], gz[i]) = (turn(x, gx[i]), turn(y, gy[i]), turn(z, gz[i]));
+            (nx[i], ny[i], nz[i]) = (turn(x, nx[i]), turn(y, ny[i]), turn(z, nz[i]));
+        }
+    }
+}
+
 impl Geometry {
+    /// The surfaces at the hits of `members`.
+    pub fn surfaces(&self, members: &[u32], rays: &Rays, hits: &Hits, surfaces: &mut Surfaces) {
+        surfaces.resize(members.len());
+        for (i, &member) in members.iter().enumerate() {
+            let member = member as usize;
+            let object = &self.objects[hits.id.object[member] as usize];
+            if let Shape::Sphere { center, radius } = object.shape {
+                let outward = rays.origin.get(member) + rays.direction.get(member) * hits.t[member] - center;
+                surfaces.point.set(i, center);
+                surfaces.geometric.set(i, outward);
+                surfaces.radius[i] = radius;
+                continue;
+            }
+            let surface = self.surface(&rays.get(member), &hits.get(member));
+            surfaces.point.set(i, surface.point);
+            surfaces.geometric.set(i, surface.geometric);
+            surfaces.normal.set(i, surface.normal);
+            surfaces.radius[i] = -1.0;
+        }
+        simd::run(OntoSpheres { surfaces });
+    }
+
     /// The surface at a hit.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
@@ -71,19 +147,41 @@ impl Geometry {
         }
     }
 
-    /// The material at a hit.
-    #[inline]
-    pub fn material(&self, hit: &Hit) -> u32 {
-        let object = &self.objects[hit.id.object as usize];
+    /// The material at every hit; `none` where there is no hit.
+    pub fn materials(&self, hits: &Hits, none: u32, materials: &mut Vec<u32>) {
+        materials.clear();
+        materials.extend(hits.id.object.iter().enumerate().map(|(i, &object)| {
+            let only = self.only_material.get(object as usize).copied().unwrap_or(none);
+            if only == MANY { self.material_of(hits.id.get(i)) } else { only }
+        }));
+    }
+
+    /// The material of a primitive.
+    fn material_of(&self, id: Id) -> u32 {
+        let object = &self.objects[id.object as usize];
         let slot = match object.shape {
             Shape::Mesh(index) | Shape::MeshInstance(index) => {
-                self.meshes[index as usize].slots.get(hit.id.index as usize).copied().unwrap_or(0)
+                self.meshes[index as usize].slots.get(id.index as usize).copied().unwrap_or(0)
             }
             _ => 0,
         };
         object.materials.get(slot as usize).copied().unwrap_or(crate::material::BLACK)
     }
+
+    /// The material of each object that has only one, [`MANY`] for the others.
+    pub(super) fn only_materials(&self) -> Vec<u32> {
+        let many = |object: &super::Object| match object.shape {
+            Shape::Mesh(index) | Shape::MeshInstance(index) => !self.meshes[index as usize].slots.is_empty(),
+            _ => false,
+        };
+        let only =
+            |(number, object)| if many(object) { MANY } else { self.material_of(Id { object: number, index: 0 }) };
+        (0..).zip(&self.objects).map(only).collect()
+    }
 }
+
+/// In place of a material: different triangles have different ones.
+const MANY: u32 = u32::MAX;
 
 /// Barycentric interpolation.
 fn blend<T: std::ops::Mul<f32, Output = T> + std::ops::Add<Output = T>>([a, b, c]: [T; 3], hit: &Hit) -> T {

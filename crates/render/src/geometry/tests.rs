@@ -46,7 +46,7 @@ fn random_soup(random: &mut Random, count: usize, size: f32) -> MeshShape {
 }
 
 /// Rays at the cube from outside and inside: some in bundles, as packets like them, some anywhere.
-fn rays(random: &mut Random, count: usize, scale: f32, center: Vec3) -> Vec<PlainRay> {
+fn rays(random: &mut Random, count: usize, scale: f32, center: Vec3) -> Vec<Ray> {
     let mut rays = Vec::new();
     while rays.len() < count {
         let (origin, target) = (random.point() * 3.0, random.point());
@@ -56,18 +56,38 @@ fn rays(random: &mut Random, count: usize, scale: f32, center: Vec3) -> Vec<Plai
             let direction = (target + random.point() * spread - origin).normalize();
             let t_max = if random.next() < 0.7 { f32::INFINITY } else { random.next() * 4.0 * scale };
             let origin = center + origin * scale;
-            rays.push(PlainRay(Ray { origin, direction, t_min: 0.0, t_max, skip: Id::NONE }));
+            rays.push(Ray { origin, direction, t_min: 0.0, t_max, skip: Id::NONE });
         }
     }
     rays
 }
 
-struct PlainRay(Ray);
-
-impl AsRef<Ray> for PlainRay {
-    fn as_ref(&self) -> &Ray {
-        &self.0
+impl Geometry {
+    /// Improves `hit` by all that one ray meets, alone.
+    fn trace<S: Simd, const ANY: bool>(&self, ray: &Ray, hit: &mut Hit, scratch: &mut Scratch) {
+        self.planes.iter().for_each(|plane| plane.intersect(ray, hit));
+        if !ANY || hit.id == Id::NONE {
+            let root = (0.0, self.tree.root);
+            self.tree.trace::<S, ANY>(root, ray, hit, &mut scratch.outer, &mut scratch.inner);
+        }
     }
+}
+
+impl PlaneShape {
+    /// Improves `hit` by where `ray` crosses the plane.
+    fn intersect(&self, ray: &Ray, hit: &mut Hit) {
+        let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
+        if t > ray.t_min && ray.skip != self.id() {
+            hit.improve(Hit { t, u: 0.0, v: 0.0, id: self.id() });
+        }
+    }
+}
+
+/// The rays in rows.
+fn rows(rays: &[Ray]) -> Rays {
+    let mut rows = Rays::default();
+    rays.iter().for_each(|&ray| rows.push(ray));
+    rows
 }
 
 /// Tests every primitive without a tree.
@@ -126,16 +146,21 @@ fn bits(hit: &Hit) -> (u32, u32, u32, Id) {
 }
 
 /// Traces rays in every way there is, and compares.
-fn check(name: &str, geometry: &Geometry, rays: &[PlainRay]) {
+fn check(name: &str, geometry: &Geometry, rays: &[Ray]) {
     let mut scratch = Scratch::default();
-    let (mut hits, mut blocked) = (Vec::new(), Vec::new());
-    geometry.closest(rays, &mut hits, &mut scratch);
-    geometry.occluded(rays, &mut blocked, &mut scratch);
-    let (mut plain_hits, mut plain_blocked) = (vec![Hit::NONE; rays.len()], vec![false; rays.len()]);
-    Closest { geometry, rays, hits: &mut plain_hits, scratch: &mut scratch }.run::<Portable>();
-    Occluded { geometry, rays, blocked: &mut plain_blocked, scratch: &mut scratch }.run::<Portable>();
+    let rows = rows(rays);
+    let view = rows.view(0.0);
+    let (mut found, mut blocked) = (Hits::default(), Vec::new());
+    geometry.closest(view, &mut found, &mut scratch);
+    geometry.occluded(view, &mut blocked, &mut scratch);
+    let (mut plain_found, mut plain_blocked) = (Hits::default(), vec![false; rays.len()]);
+    plain_found.resize(rays.len());
+    Closest { geometry, rays: view, hits: &mut plain_found, scratch: &mut scratch }.run::<Portable>();
+    Occluded { geometry, rays: view, blocked: &mut plain_blocked, scratch: &mut scratch }.run::<Portable>();
+    let each = |hits: &Hits| -> Vec<Hit> { (0..rays.len()).map(|i| hits.get(i)).collect() };
+    let (hits, plain_hits) = (each(&found), each(&plain_found));
     assert_eq!(blocked, plain_blocked, "{name}: shadows of AVX2 and arrays");
-    for (i, PlainRay(ray)) in rays.iter().enumerate() {
+    for (i, ray) in rays.iter().enumerate() {
         let mut alone = Hit { t: ray.t_max, ..Hit::NONE };
         geometry.trace::<Portable, false>(ray, &mut alone, &mut scratch);
         assert_eq!(bits(&hits[i]), bits(&plain_hits[i]), "{name}: ray {i} of AVX2 and arrays");
@@ -304,12 +329,12 @@ fn rays_along_the_axes_and_in_the_planes_of_triangles_are_met_as_by_brute_force(
     }));
     let geometry = plan(|plan| plan.mesh(flat, &[here()]));
     let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
-    let rays: Vec<PlainRay> = (0..960)
+    let rays: Vec<Ray> = (0..960)
         .map(|i| {
             let direction = axes[i / 16 % 6];
             let origin = random.point() - direction * 2.0;
             let origin = if i % 2 == 0 { origin } else { origin.with_z(0.25) };
-            PlainRay(Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE })
+            Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE }
         })
         .collect();
     check("axes", &geometry, &rays);
@@ -351,18 +376,18 @@ fn no_ray_leaves_a_closed_mesh_between_its_triangles() {
         targets.extend([(a + b) * 0.5, b + (c - b) * random.next(), c + (a - c) * random.next(), (a + b + c) / 3.0]);
     }
     let geometry = plan(|plan| plan.mesh(mesh, &[here()]));
-    let rays: Vec<PlainRay> = targets
+    let rays: Vec<Ray> = targets
         .iter()
         .map(|&target| {
             let origin = random.point() * 0.1;
             let direction = (target - origin).normalize();
-            PlainRay(Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE })
+            Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE }
         })
         .collect();
-    let mut hits = Vec::new();
-    geometry.closest(&rays, &mut hits, &mut Scratch::default());
-    for (i, hit) in hits.iter().enumerate() {
-        assert!(hit.id != Id::NONE, "ray {i} towards {} slips through", targets[i]);
+    let mut hits = Hits::default();
+    geometry.closest(rows(&rays).view(0.0), &mut hits, &mut Scratch::default());
+    for (i, target) in targets.iter().enumerate() {
+        assert!(hits.get(i).id != Id::NONE, "ray {i} towards {target} slips through");
     }
     check("ball", &geometry, &rays);
 }

@@ -171,16 +171,17 @@ struct Space<S> {
 impl<S: Simd> Space<S> {
     #[inline(always)]
     fn new(ray: &Ray) -> Self {
-        let inverse = kernel::inverse(ray.direction);
-        let side = |inverse: f32| usize::from(inverse < 0.0);
+        let direction = Vec3x8::splat(ray.direction);
+        let inverse = Vec3x8 {
+            x: kernel::inverse(direction.x),
+            y: kernel::inverse(direction.y),
+            z: kernel::inverse(direction.z),
+        };
+        let side = |component: f32| usize::from(component.is_sign_negative());
         Space {
-            lanes: Lanes {
-                origin: Vec3x8::splat(ray.origin),
-                direction: Vec3x8::splat(ray.direction),
-                t_min: S::splat(ray.t_min),
-            },
-            inverse: Vec3x8::splat(inverse),
-            sides: [side(inverse.x), side(inverse.y), side(inverse.z)],
+            lanes: Lanes { origin: Vec3x8::splat(ray.origin), direction, t_min: S::splat(ray.t_min) },
+            inverse,
+            sides: [side(ray.direction.x), side(ray.direction.y), side(ray.direction.z)],
         }
     }
 

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::geometry::simd::{self, Simd};
 use crate::math;
 use crate::sampler::SampleKey;
-use crate::wave::{CameraSample, Target};
+use crate::wave::{Samples, Shots};
 
 /// The camera. Its focal length is in pixels of the scene's own width, so that another output size crops.
 #[derive(Debug, Clone, Copy)]
@@ -28,9 +28,14 @@ impl ReportCamera {
         ReportCamera { eye, forward: forward * focal, right, down, half: size.map(|s| (s / 2) as f32) }
     }
 
-    /// Appends the samples of a wave.
-    pub fn samples(&self, grid: Grid, targets: &[Target], seed: u64, samples: &mut Vec<CameraSample>) {
-        simd::run(Aim { camera: self, grid, targets, seed, samples });
+    /// Aims the samples of a wave. (They need no keys: nothing that follows is random.)
+    pub fn samples(&self, grid: Grid, shots: &Shots<'_>, seed: u64, samples: &mut Samples) {
+        samples.resize(shots.count());
+        samples.rays.t_max.fill(f32::INFINITY);
+        samples.rays.origin.x.fill(self.eye.x);
+        samples.rays.origin.y.fill(self.eye.y);
+        samples.rays.origin.z.fill(self.eye.z);
+        simd::run(Aim { camera: self, grid, shots, seed, samples });
     }
 
     /// Origin and unit direction of the ray through a position in pixels from the top left.
@@ -65,9 +70,9 @@ const CHUNK: usize = 64;
 struct Aim<'a> {
     camera: &'a ReportCamera,
     grid: Grid,
-    targets: &'a [Target],
+    shots: &'a Shots<'a>,
     seed: u64,
-    samples: &'a mut Vec<CameraSample>,
+    samples: &'a mut Samples,
 }
 
 impl simd::Kernel for Aim<'_> {
@@ -75,38 +80,37 @@ impl simd::Kernel for Aim<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self) {
-        let Aim { camera, grid, targets, seed, samples } = self;
+        let Aim { camera, grid, shots, seed, samples } = self;
         let step = 0.5 / grid.edge as f32;
         let alone = grid.edge * grid.edge * grid.repeats == 1;
         // The cell of a sample is the same in all pixels: divided once, unless there are very many.
         let cells: [[u32; 2]; CHUNK] = std::array::from_fn(|index| grid.cell(index as u32));
-        for targets in targets.chunks(CHUNK) {
+        let count = samples.rays.len();
+        let mut each = shots.iter();
+        for start in (0..count).step_by(CHUNK) {
+            let size = CHUNK.min(count - start);
             let (mut pixels, mut indices) = ([[0; CHUNK]; 2], [0; CHUNK]);
             let mut corners = [[0.0; CHUNK]; 2];
-            for (i, target) in targets.iter().enumerate() {
-                let cell = cells.get(target.index as usize).copied().unwrap_or_else(|| grid.cell(target.index));
-                indices[i] = target.index;
+            for (i, (pixel, index)) in each.by_ref().take(size).enumerate() {
+                let cell = cells.get(index as usize).copied().unwrap_or_else(|| grid.cell(index));
+                indices[i] = index;
                 for axis in 0..2 {
-                    pixels[axis][i] = target.pixel[axis];
-                    corners[axis][i] = target.pixel[axis] as f32 + (cell[axis] + 1) as f32 * step;
+                    pixels[axis][i] = pixel[axis];
+                    corners[axis][i] = pixel[axis] as f32 + (cell[axis] + 1) as f32 * step;
                 }
             }
-            let (mut keys, mut directions) = ([0; CHUNK], [[0.0; CHUNK]; 3]);
+            let mut directions = [[0.0; CHUNK]; 3];
             for i in 0..CHUNK {
-                let key = SampleKey::new(pixels[0][i], pixels[1][i], indices[i], seed);
-                let jitter = key.random_pair(0);
+                let jitter = SampleKey::new(pixels[0][i], pixels[1][i], indices[i], seed).random_pair(0);
                 // Cells are not stratified: the jitter is as wide as the pixel.
                 let at = |axis: usize| corners[axis][i] + if alone { 0.5 } else { jitter[axis] } - 0.5;
                 let (_, direction) = camera.ray(at(0), at(1));
-                keys[i] = key.pixel;
                 (directions[0][i], directions[1][i], directions[2][i]) = (direction.x, direction.y, direction.z);
             }
-            samples.extend((0..targets.len()).map(|i| CameraSample {
-                origin: camera.eye,
-                direction: Vec3::new(directions[0][i], directions[1][i], directions[2][i]),
-                key: SampleKey { pixel: keys[i], index: indices[i] },
-                weight: 1.0,
-            }));
+            let [x, y, z] = samples.rays.direction.slices_mut(count);
+            for (row, directions) in [x, y, z].into_iter().zip(&directions) {
+                row[start..start + size].copy_from_slice(&directions[..size]);
+            }
         }
     }
 }

@@ -1,125 +1,248 @@
-//! Hits in the report's meaning: a chunk at a time, each coordinate in a row of its own, so that the loops over them
-//! are vectorised.
+//! Hits in the report's meaning, all of a batch at once: each coordinate lies in a row of its own, so that the loops
+//! over them are vectorised.
 
 use glam::Vec3;
 
-use super::{MAX_BOUNCES, Report, ReportLight, T_MIN, UNLIT, triangle};
-use crate::geometry::{Geometry, Hit, Id, Ray, Shape};
+use super::{Gathered, MAX_BOUNCES, Report, ReportLight, T_MIN, UNLIT, triangle};
+use crate::geometry::simd::{self, Simd};
+use crate::geometry::{Geometry, Hit, Ids, Ray, RayView, Rows, Scratch, Shape};
 use crate::material::{Material, Response};
 use crate::math;
-use crate::wave::{Batch, Node, PathRay, Queues, RayKind, ShadowRay};
+use crate::wave::{Batch, Path, Queues, RayKind};
 
-/// Hits that are shaded together.
-pub(super) const CHUNK: usize = 64;
-
-/// One coordinate of all hits of a chunk.
-type Row = [f32; CHUNK];
-
-/// Hits in the original's terms.
-pub(super) struct Points {
-    position: [Row; 3],
+/// One thread's room for the hits of a batch.
+#[derive(Default)]
+pub(crate) struct Room {
+    pub position: Rows,
     /// Not of unit length for triangles and planes.
-    normal: [Row; 3],
-    /// What was hit, and which node gathers the light.
-    pub ids: [(Id, u32); CHUNK],
+    pub normal: Rows,
+    /// From the reference point of the texture, of unit length: see [`Report::reference`].
+    pub outward: Rows,
+    pub texture_points: Rows,
+    pub colors: Vec<[f32; 3]>,
+    ids: Ids,
+    sight: Sight,
+    /// Light from the lights.
+    direct: Rows,
+    blocked: Vec<bool>,
+    scratch: Scratch,
 }
 
-impl Points {
-    pub const NONE: Points =
-        Points { position: [[0.0; CHUNK]; 3], normal: [[0.0; CHUNK]; 3], ids: [(Id::NONE, 0); CHUNK] };
-}
-
-/// A light as the points of a chunk see it.
+/// A light as the points of a batch see it.
+#[derive(Default)]
 struct Sight {
-    direction: [Row; 3],
-    distance: Row,
+    direction: Rows,
+    /// Where rays towards the light end; before their beginning where nothing arrives.
+    t_max: Vec<f32>,
     /// Between the light and the normal.
-    cosine: Row,
-    /// The part of the light that reaches a matte surface: the cosine and the linear decay.
-    share: Row,
+    cosine: Vec<f32>,
+    /// What arrives if nothing is in the way.
+    light: Rows,
+}
+
+impl Room {
+    /// Positions, normals and directions of a batch.
+    pub fn locate(&mut self, report: &Report, batch: &Batch<'_>) {
+        let count = batch.members.len();
+        self.position.resize(count);
+        self.normal.resize(count);
+        self.outward.resize(count);
+        self.ids.resize(count);
+        let (mut position, mut outward) = (self.position.slices_mut(count), self.outward.slices_mut(count));
+        let (objects, indices) = (&mut self.ids.object[..count], &mut self.ids.index[..count]);
+        let mut round = true;
+        for (i, &member) in batch.members.iter().enumerate() {
+            let member = member as usize;
+            let p = batch.rays.origin.get(member) + batch.rays.direction.get(member) * batch.hits.t[member];
+            put(&mut position, i, p);
+            let id = batch.hits.id.get(member);
+            (objects[i], indices[i]) = (id.object, id.index);
+            let center = match batch.geometry.objects[id.object as usize].shape {
+                Shape::Sphere { center, .. } => center,
+                _ => {
+                    round = false;
+                    report.reference(batch.geometry, &batch.hits.get(member))
+                }
+            };
+            put(&mut outward, i, p - center);
+        }
+        simd::run(Normalize { rows: &mut self.outward });
+        if round {
+            self.normal.clone_from(&self.outward);
+            return;
+        }
+        for (i, &object) in self.ids.object.iter().enumerate() {
+            let normal = match batch.geometry.objects[object as usize].shape {
+                Shape::Sphere { .. } => self.outward.get(i),
+                Shape::Plane(index) => report.plane_normals[index as usize],
+                _ => facing_normal(batch.geometry, &batch.ray(i), &batch.hit(i)),
+            };
+            self.normal.set(i, normal);
+        }
+    }
+}
+
+/// Writes point `i` of three rows.
+#[inline(always)]
+fn put(rows: &mut [&mut [f32]; 3], i: usize, p: Vec3) {
+    (rows[0][i], rows[1][i], rows[2][i]) = (p.x, p.y, p.z);
+}
+
+/// Makes vectors unit vectors; those without a length become zero.
+struct Normalize<'a> {
+    rows: &'a mut Rows,
+}
+
+impl simd::Kernel for Normalize<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let count = self.rows.x.len();
+        let [x, y, z] = self.rows.slices_mut(count);
+        for i in 0..count {
+            let scale = 1.0 / (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
+            let scale = if scale < f32::INFINITY { scale } else { 0.0 };
+            (x[i], y[i], z[i]) = (x[i] * scale, y[i] * scale, z[i] * scale);
+        }
+    }
 }
 
 impl Report {
-    /// Positions and normals of a chunk.
-    #[inline(always)]
-    pub(super) fn locate(&self, chunk: &Batch<'_>, points: &mut Points) {
-        let geometry = chunk.geometry;
-        let mut curved = [false; CHUNK];
-        for (i, (path, hit)) in chunk.iter().enumerate() {
-            let position = path.ray.origin + path.ray.direction * hit.t;
-            let normal = match geometry.objects[hit.id.object as usize].shape {
-                Shape::Sphere { center, .. } => {
-                    curved[i] = true;
-                    position - center
-                }
-                Shape::Plane(index) => self.plane_normals[index as usize],
-                _ => facing_normal(geometry, &path.ray, hit),
-            };
-            points.ids[i] = (hit.id, path.node);
-            for axis in 0..3 {
-                points.position[axis][i] = position[axis];
-                points.normal[axis][i] = normal[axis];
-            }
-        }
-        let [nx, ny, nz] = &mut points.normal;
-        for i in 0..CHUNK {
-            let length = (nx[i] * nx[i] + ny[i] * ny[i] + nz[i] * nz[i]).sqrt();
-            let scale = if curved[i] && length > 0.0 { 1.0 / length } else { 1.0 };
-            (nx[i], ny[i], nz[i]) = (nx[i] * scale, ny[i] * scale, nz[i] * scale);
-        }
-    }
-
     /// Light from the lights; nothing in between may be hit, glass included.
-    #[inline(always)]
-    pub(super) fn direct(
-        &self,
-        chunk: &Batch<'_>,
-        material: &Material,
-        points: &Points,
-        colors: &[Vec3],
-        queues: &mut Queues,
-    ) {
-        let phong = match material.response {
+    pub(super) fn direct(&self, batch: &Batch<'_>, room: &mut Room, queues: &mut Queues<Gathered>) {
+        let Room { position, normal, colors, ids, sight, direct, blocked, scratch, .. } = room;
+        let (count, material) = (batch.members.len(), batch.material);
+        let lobe = match material.response {
             Response::Phong { specular, power, .. } => Some((specular, power)),
             _ => None,
         };
-        if self.lights.is_empty() && phong.is_none() {
-            for (&color, &(_, node)) in colors.iter().zip(&points.ids) {
-                queues.nodes[node as usize].direct += UNLIT * color;
-            }
+        direct.clear();
+        direct.resize(count);
+        if self.lights.is_empty() && lobe.is_none() {
+            colors.iter().enumerate().for_each(|(i, color)| direct.set(i, UNLIT * Vec3::from_array(*color)));
         }
         for light in &self.lights {
-            let sight = Sight::of(light, points);
-            for (i, &color) in colors.iter().enumerate() {
-                let contribution = match phong {
-                    Some(lobe) => highlighted(light, lobe, &sight, points, (i, color, chunk.ray(i).direction)),
-                    None => light.color * color * sight.share[i],
-                };
-                // Nothing for no light, and for points in the light itself.
-                if contribution != Vec3::ZERO && contribution.is_finite() {
-                    let (skip, node) = points.ids[i];
-                    // A little longer, so that a surface through the light itself is in the way everywhere.
-                    let t_max = sight.distance[i] * 1.000_01;
-                    let (origin, direction) = (at(&points.position, i), at(&sight.direction, i));
-                    let ray = Ray { origin, direction, t_min: T_MIN, t_max, skip };
-                    queues.shadows.push(ShadowRay { ray, contribution, node });
-                }
+            let points = LightPoints { position, normal, colors };
+            simd::run(See { light, points, sight });
+            if let Some(lobe) = lobe {
+                sight.add_lobe(light, lobe, batch, points);
             }
+            let rays =
+                RayView { origin: position, direction: &sight.direction, t_max: &sight.t_max, skip: ids, t_min: T_MIN };
+            queues.stats.shadow_rays += sight.t_max.iter().filter(|&&t_max| t_max >= 0.0).count() as u64;
+            batch.geometry.occluded(rays, blocked, scratch);
+            simd::run(Gather { light: &sight.light, blocked, direct });
+        }
+        let gain = Share::of(material).gain;
+        for (i, &member) in batch.members.iter().enumerate() {
+            let node = &mut queues.nodes[batch.paths[member as usize].node as usize];
+            (node.direct, node.gain) = (direct.get(i), gain);
         }
     }
 }
 
-/// What a light gives to point `i` of a glossy surface, seen along `along`. (The light's range has no part in it.)
-fn highlighted(
-    light: &ReportLight,
-    (specular, power): (Vec3, f32),
-    sight: &Sight,
-    points: &Points,
-    (i, color, along): (usize, Vec3, Vec3),
-) -> Vec3 {
-    let (normal, cosine) = (at(&points.normal, i), sight.cosine[i]);
-    let mirrored = (normal * (2.0 * cosine) - at(&sight.direction, i)).normalize_or(normal);
-    0.5 * color * cosine + specular * light.color * signed_power(mirrored.dot(along), power)
+/// Points that are lit.
+#[derive(Clone, Copy)]
+struct LightPoints<'a> {
+    position: &'a Rows,
+    normal: &'a Rows,
+    colors: &'a [[f32; 3]],
+}
+
+/// Looks from points to a light.
+struct See<'a> {
+    light: &'a ReportLight,
+    points: LightPoints<'a>,
+    sight: &'a mut Sight,
+}
+
+impl simd::Kernel for See<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let See { light, points: LightPoints { position, normal, colors }, sight } = self;
+        let count = colors.len();
+        sight.resize(count);
+        let ([px, py, pz], [nx, ny, nz]) = (position.slices(count), normal.slices(count));
+        let [dx, dy, dz] = sight.direction.slices_mut(count);
+        let [red, green, blue] = sight.light.slices_mut(count);
+        let (t_max, cosines) = (&mut sight.t_max[..count], &mut sight.cosine[..count]);
+        for i in 0..count {
+            let (x, y, z) = (light.position.x - px[i], light.position.y - py[i], light.position.z - pz[i]);
+            let distance = (x * x + y * y + z * z).sqrt();
+            let inverse = 1.0 / distance;
+            (dx[i], dy[i], dz[i]) = (x * inverse, y * inverse, z * inverse);
+            let cosine = nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i];
+            cosines[i] = cosine;
+            // The cosine and the linear decay; comparisons fail for points in the light itself.
+            let share = cosine * (1.0 - distance / light.range);
+            let share = if cosine > 0.0 && distance <= light.range { share } else { 0.0 };
+            red[i] = light.color.x * colors[i][0] * share;
+            green[i] = light.color.y * colors[i][1] * share;
+            blue[i] = light.color.z * colors[i][2] * share;
+            let total = red[i].abs() + green[i].abs() + blue[i].abs();
+            t_max[i] = reach(total, distance);
+        }
+    }
+}
+
+/// Where the ray towards a light ends that would bring `total`. A little behind the light, so that a surface through
+/// the light itself is in the way everywhere; nowhere for no light, or a broken one.
+#[inline(always)]
+fn reach(total: f32, distance: f32) -> f32 {
+    if total > 0.0 && total < f32::INFINITY { distance * 1.000_01 } else { -1.0 }
+}
+
+impl Sight {
+    #[inline(always)]
+    fn resize(&mut self, count: usize) {
+        self.direction.resize(count);
+        self.light.resize(count);
+        self.t_max.resize(count, -1.0);
+        self.cosine.resize(count, 0.0);
+    }
+
+    /// What the light gives to a glossy surface in place of a matte one. (The light's range has no part in it.)
+    fn add_lobe(
+        &mut self,
+        light: &ReportLight,
+        (specular, power): (Vec3, f32),
+        batch: &Batch<'_>,
+        points: LightPoints<'_>,
+    ) {
+        for (i, &member) in batch.members.iter().enumerate() {
+            let along = batch.rays.direction.get(member as usize);
+            let (normal, direction, cosine) = (points.normal.get(i), self.direction.get(i), self.cosine[i]);
+            let mirrored = (normal * (2.0 * cosine) - direction).normalize_or(normal);
+            let color = Vec3::from_array(points.colors[i]);
+            let lit = 0.5 * color * cosine + specular * light.color * signed_power(mirrored.dot(along), power);
+            self.light.set(i, lit);
+            self.t_max[i] = reach(lit.abs().element_sum(), (light.position - points.position.get(i)).length());
+        }
+    }
+}
+
+/// Adds the light that is not blocked.
+struct Gather<'a> {
+    light: &'a Rows,
+    blocked: &'a [bool],
+    direct: &'a mut Rows,
+}
+
+impl simd::Kernel for Gather<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let count = self.blocked.len();
+        for (row, light) in self.direct.slices_mut(count).into_iter().zip(self.light.slices(count)) {
+            for i in 0..count {
+                row[i] += if self.blocked[i] { 0.0 } else { light[i] };
+            }
+        }
+    }
 }
 
 /// What a material makes of the light from around.
@@ -144,34 +267,6 @@ impl Share {
     }
 }
 
-impl Sight {
-    #[inline(always)]
-    fn of(light: &ReportLight, points: &Points) -> Sight {
-        let row = [0.0; CHUNK];
-        let mut sight = Sight { direction: [row; 3], distance: row, cosine: row, share: row };
-        let ([px, py, pz], [nx, ny, nz]) = (&points.position, &points.normal);
-        let [dx, dy, dz] = &mut sight.direction;
-        for i in 0..CHUNK {
-            let (x, y, z) = (light.position.x - px[i], light.position.y - py[i], light.position.z - pz[i]);
-            let distance = (x * x + y * y + z * z).sqrt();
-            let inverse = 1.0 / distance;
-            (dx[i], dy[i], dz[i]) = (x * inverse, y * inverse, z * inverse);
-            sight.distance[i] = distance;
-            let cosine = nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i];
-            sight.cosine[i] = cosine;
-            let reached = cosine > 0.0 && distance <= light.range;
-            sight.share[i] = if reached { cosine * (1.0 - distance / light.range) } else { 0.0 };
-        }
-        sight
-    }
-}
-
-/// Point `i` of three rows.
-#[inline(always)]
-fn at(rows: &[Row; 3], i: usize) -> Vec3 {
-    Vec3::new(rows[0][i], rows[1][i], rows[2][i])
-}
-
 /// The normal of a triangle towards the ray, as long as its edges make it; of other shapes their own.
 fn facing_normal(geometry: &Geometry, ray: &Ray, hit: &Hit) -> Vec3 {
     match triangle(geometry, hit) {
@@ -183,21 +278,20 @@ fn facing_normal(geometry: &Geometry, ray: &Ray, hit: &Hit) -> Vec3 {
     }
 }
 
-/// Queues the secondary rays of a chunk.
-#[inline(always)]
-pub(super) fn spawn_all(chunk: &Batch<'_>, share: &Share, points: &Points, queues: &mut Queues) {
-    for (i, (path, hit)) in chunk.iter().enumerate() {
+/// Queues the secondary rays of a batch.
+pub(super) fn spawn_all(batch: &Batch<'_>, room: &Room, queues: &mut Queues<Gathered>) {
+    let share = Share::of(batch.material);
+    if share.reflected == 0.0 && share.refracted == 0.0 {
+        return;
+    }
+    for (i, &member) in batch.members.iter().enumerate() {
+        let path = batch.path(i);
         if path.depth.total() >= MAX_BOUNCES {
             continue;
         }
-        let (d, normal) = (path.ray.direction, at(&points.normal, i));
-        let from = |direction| Ray {
-            origin: at(&points.position, i),
-            direction,
-            t_min: T_MIN,
-            t_max: f32::INFINITY,
-            skip: hit.id,
-        };
+        let (d, normal) = (batch.rays.direction.get(member as usize), room.normal.get(i));
+        let (origin, skip) = (room.position.get(i), room.ids.get(i));
+        let from = |direction| Ray { origin, direction, t_min: T_MIN, t_max: f32::INFINITY, skip };
         if share.reflected > 0.0 {
             let mirrored = d - normal * (2.0 * normal.dot(d));
             spawn(path, from(mirrored.normalize_or(d)), share.reflected, RayKind::Reflection, queues);
@@ -211,12 +305,11 @@ pub(super) fn spawn_all(chunk: &Batch<'_>, share: &Share, points: &Points, queue
 }
 
 /// Queues a secondary ray with a node of its own.
-#[inline(always)]
-fn spawn(path: &PathRay, ray: Ray, weight: f32, kind: RayKind, queues: &mut Queues) {
+fn spawn(path: &Path, ray: Ray, share: f32, kind: RayKind, queues: &mut Queues<Gathered>) {
     let node = queues.nodes.len() as u32;
-    queues.nodes.push(Node { direct: Vec3::ZERO, indirect: Vec3::ZERO, parent: path.node, weight, gain: 0.0 });
+    queues.nodes.push(Gathered { parent: path.node, share, ..Gathered::default() });
     let depth = if kind == RayKind::Refraction { path.depth.refracted() } else { path.depth.reflected() };
-    queues.rays.push(PathRay { ray, weight: Vec3::ONE, node, key: path.key, kind, depth });
+    queues.next.push(ray, Path { weight: Vec3::ONE, node, kind, depth });
 }
 
 /// The refracted direction. (Snell's law has `m |h|` where the original has `m`.)

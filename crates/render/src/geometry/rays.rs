@@ -1,0 +1,223 @@
+//! Rays and hits in rows: each coordinate of many rays lies in a row of its own, as the kernels read them and as the
+//! loops of shading write them.
+
+use glam::Vec3;
+
+use super::simd::{Simd, Vec3x8};
+use super::{Hit, Id, Ray};
+
+/// Rays that the kernels take at a time.
+pub(crate) const GROUP: usize = 8;
+
+/// Points or vectors.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Rows {
+    pub x: Vec<f32>,
+    pub y: Vec<f32>,
+    pub z: Vec<f32>,
+}
+
+impl Rows {
+    pub fn clear(&mut self) {
+        self.resize(0);
+    }
+
+    /// Makes room for exactly `count`; what is new is zero.
+    pub fn resize(&mut self, count: usize) {
+        self.each(|row| row.resize(count, 0.0));
+    }
+
+    #[inline]
+    pub fn push(&mut self, v: Vec3) {
+        self.x.push(v.x);
+        self.y.push(v.y);
+        self.z.push(v.z);
+    }
+
+    #[inline]
+    pub fn get(&self, i: usize) -> Vec3 {
+        Vec3::new(self.x[i], self.y[i], self.z[i])
+    }
+
+    #[inline]
+    pub fn set(&mut self, i: usize, v: Vec3) {
+        (self.x[i], self.y[i], self.z[i]) = (v.x, v.y, v.z);
+    }
+
+    /// As many rows as asked for, all of the same length, which the compiler can then rely on.
+    #[inline(always)]
+    pub fn slices(&self, count: usize) -> [&[f32]; 3] {
+        [&self.x[..count], &self.y[..count], &self.z[..count]]
+    }
+
+    /// [`Rows::slices`], to write to.
+    #[inline(always)]
+    pub fn slices_mut(&mut self, count: usize) -> [&mut [f32]; 3] {
+        [&mut self.x[..count], &mut self.y[..count], &mut self.z[..count]]
+    }
+
+    fn each(&mut self, f: impl FnMut(&mut Vec<f32>)) {
+        [&mut self.x, &mut self.y, &mut self.z].into_iter().for_each(f);
+    }
+}
+
+/// Names of primitives.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Ids {
+    pub object: Vec<u32>,
+    pub index: Vec<u32>,
+}
+
+impl Ids {
+    pub fn clear(&mut self) {
+        self.object.clear();
+        self.index.clear();
+    }
+
+    pub fn resize(&mut self, count: usize) {
+        self.object.resize(count, Id::NONE.object);
+        self.index.resize(count, Id::NONE.index);
+    }
+
+    #[inline]
+    pub fn push(&mut self, id: Id) {
+        self.object.push(id.object);
+        self.index.push(id.index);
+    }
+
+    #[inline]
+    pub fn get(&self, i: usize) -> Id {
+        Id { object: self.object[i], index: self.index[i] }
+    }
+
+    #[inline]
+    pub fn set(&mut self, i: usize, id: Id) {
+        (self.object[i], self.index[i]) = (id.object, id.index);
+    }
+}
+
+/// Rays: see [`Ray`] for what the rows mean. A ray that ends before it begins meets nothing.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Rays {
+    pub origin: Rows,
+    pub direction: Rows,
+    pub t_max: Vec<f32>,
+    pub skip: Ids,
+}
+
+impl Rays {
+    pub fn len(&self) -> usize {
+        self.t_max.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.t_max.is_empty()
+    }
+
+    pub fn clear(&mut self) {
+        self.origin.clear();
+        self.direction.clear();
+        self.t_max.clear();
+        self.skip.clear();
+    }
+
+    /// Room for `count` rays: all rows of that length, for those who write them one by one.
+    pub fn resize(&mut self, count: usize) {
+        self.origin.resize(count);
+        self.direction.resize(count);
+        self.t_max.resize(count, -1.0);
+        self.skip.resize(count);
+    }
+
+    #[inline]
+    pub fn push(&mut self, ray: Ray) {
+        self.origin.push(ray.origin);
+        self.direction.push(ray.direction);
+        self.t_max.push(ray.t_max);
+        self.skip.push(ray.skip);
+    }
+
+    /// Ray `i`, from 0 on.
+    #[inline]
+    pub fn get(&self, i: usize) -> Ray {
+        let (origin, direction) = (self.origin.get(i), self.direction.get(i));
+        Ray { origin, direction, t_min: 0.0, t_max: self.t_max[i], skip: self.skip.get(i) }
+    }
+
+    /// These rays, to be traced from `t_min` on.
+    pub fn view(&self, t_min: f32) -> RayView<'_> {
+        RayView { origin: &self.origin, direction: &self.direction, t_max: &self.t_max, skip: &self.skip, t_min }
+    }
+}
+
+/// Rays whose rows may come from different places.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RayView<'a> {
+    pub origin: &'a Rows,
+    pub direction: &'a Rows,
+    pub t_max: &'a [f32],
+    pub skip: &'a Ids,
+    pub t_min: f32,
+}
+
+impl RayView<'_> {
+    pub fn len(&self) -> usize {
+        self.t_max.len()
+    }
+
+    /// Ray `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Ray {
+        let (origin, direction) = (self.origin.get(i), self.direction.get(i));
+        Ray { origin, direction, t_min: self.t_min, t_max: self.t_max[i], skip: self.skip.get(i) }
+    }
+}
+
+impl Rows {
+    /// The eight from `start` on, filled up by the last one.
+    #[inline(always)]
+    pub fn group<S: Simd>(&self, start: usize) -> Vec3x8<S> {
+        let last = |row: &[f32]| row.last().copied().unwrap_or_default();
+        Vec3x8 {
+            x: S::load(&eight(&self.x, start, last(&self.x))),
+            y: S::load(&eight(&self.y, start, last(&self.y))),
+            z: S::load(&eight(&self.z, start, last(&self.z))),
+        }
+    }
+}
+
+/// Eight of a row, filled up at its end.
+#[inline(always)]
+pub(super) fn eight<T: Copy>(row: &[T], start: usize, fill: T) -> [T; GROUP] {
+    match row[start..].first_chunk() {
+        Some(chunk) => *chunk,
+        None => {
+            let mut out = [fill; GROUP];
+            for (out, &value) in out.iter_mut().zip(&row[start..]) {
+                *out = value;
+            }
+            out
+        }
+    }
+}
+
+/// What rays met first: see [`Hit`] for what the rows mean.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Hits {
+    pub t: Vec<f32>,
+    pub u: Vec<f32>,
+    pub v: Vec<f32>,
+    pub id: Ids,
+}
+
+impl Hits {
+    pub fn resize(&mut self, count: usize) {
+        [&mut self.t, &mut self.u, &mut self.v].into_iter().for_each(|row| row.resize(count, 0.0));
+        self.id.resize(count);
+    }
+
+    #[inline]
+    pub fn get(&self, i: usize) -> Hit {
+        Hit { t: self.t[i], u: self.u[i], v: self.v[i], id: self.id.get(i) }
+    }
+}
