@@ -44,6 +44,7 @@ mod geometry;
 mod light;
 mod material;
 mod math;
+mod mesh_file;
 mod options;
 mod picture;
 mod report;

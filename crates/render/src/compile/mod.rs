@@ -3,6 +3,7 @@
 
 mod materials;
 mod objects;
+mod shape;
 mod unsupported;
 
 use glam::Vec3;
@@ -110,7 +111,7 @@ pub fn compile(scene: &Scene, loader: &dyn Loader, options: &CompileOptions) -> 
     let dialect = options.dialect.or(scene.dialect.map(|dialect| dialect.value)).unwrap_or_default();
     unsupported::report(scene, &mut diagnostics);
     let (materials, names) = materials::compile(scene, dialect, loader, options.look, &mut diagnostics);
-    let planned = objects::compile(scene, dialect, &names, &mut diagnostics);
+    let planned = objects::compile(&shape::Sources { scene, loader }, dialect, &names, &mut diagnostics);
     let Some(camera) = scene.cameras.last() else {
         diagnostics.push(Diagnostic::error(None, "the scene has no camera").hint(
             "add one, for instance `camera { type pinhole eye 0 0 10 target 0 0 0 up 0 1 0 fov 60 aspect 1.333 }`",

@@ -6,9 +6,10 @@ use glam::{DMat4, DVec3, Vec2, Vec3};
 use jaspe_scene::description::{
     Geometry as Written, Instance, Mesh, Name, Object, Op, Plane, Transform, TransformKind, VertexData,
 };
-use jaspe_scene::{Diagnostic, Diagnostics, Dialect, Scene, Span};
+use jaspe_scene::{Diagnostic, Diagnostics, Dialect, Span};
 
 use super::materials::Names;
+use super::shape::Sources;
 use crate::affine;
 use crate::geometry::{Geometry, MeshShape, PerVertex, Placement, Plan};
 use crate::material::BLACK;
@@ -20,7 +21,13 @@ pub(super) struct Planned {
     pub plane_normals: Vec<Vec3>,
 }
 
-pub(super) fn compile(scene: &Scene, dialect: Dialect, names: &Names<'_>, diagnostics: &mut Diagnostics) -> Planned {
+pub(super) fn compile(
+    sources: &Sources<'_>,
+    dialect: Dialect,
+    names: &Names<'_>,
+    diagnostics: &mut Diagnostics,
+) -> Planned {
+    let scene = sources.scene;
     let mut compiler = Compiler { dialect, names, diagnostics, missing: HashSet::new() };
     let mut appearances: HashMap<&str, Vec<&Instance>> = HashMap::new();
     let known: HashSet<&str> = scene.objects.iter().filter_map(|o| o.name.as_ref().map(|n| n.value.as_str())).collect();
@@ -50,7 +57,10 @@ pub(super) fn compile(scene: &Scene, dialect: Dialect, names: &Names<'_>, diagno
             let place = compiler.place(instance.transform.as_ref(), &instance.shaders, instance.span, &object.geometry);
             places.extend(place);
         }
-        add(&mut plan, object, &places, dialect, &mut plane_normals);
+        match sources.mesh(&object.geometry, compiler.diagnostics) {
+            Some(mesh) => plan.mesh(mesh, &places),
+            None => add(&mut plan, object, &places, dialect, &mut plane_normals),
+        }
     }
     Planned { geometry: plan.finish(), plane_normals }
 }

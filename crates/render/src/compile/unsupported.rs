@@ -61,12 +61,15 @@ fn shades(kind: &ShaderKind) -> bool {
 
 fn stands(geometry: &Geometry) -> bool {
     match geometry {
-        Geometry::Sphere { .. } | Geometry::Plane(_) | Geometry::Mesh(_) | Geometry::Box { .. } => true,
-        Geometry::FileMesh { .. }
+        Geometry::Sphere { .. }
+        | Geometry::Plane(_)
+        | Geometry::Mesh(_)
+        | Geometry::Box { .. }
+        | Geometry::FileMesh { .. }
         | Geometry::BezierMesh { .. }
         | Geometry::Teapot(_)
-        | Geometry::Gumbo(_)
-        | Geometry::Torus { .. }
+        | Geometry::Gumbo(_) => true,
+        Geometry::Torus { .. }
         | Geometry::Cylinder
         | Geometry::Banchoff
         | Geometry::SphereFlake { .. }

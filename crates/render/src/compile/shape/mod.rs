@@ -1,0 +1,132 @@
+//! Shapes that few words describe, as triangles (format reference, §3.13).
+
+mod bezier;
+mod gumbo;
+mod teapot;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::Vec3;
+use jaspe_scene::description::{Geometry, Name};
+use jaspe_scene::{Diagnostic, Diagnostics, Loader, Scene};
+
+use crate::geometry::{MeshShape, PerVertex};
+use crate::math;
+use crate::mesh_file;
+
+/// What shapes are made from, besides their own words.
+pub(super) struct Sources<'a> {
+    pub scene: &'a Scene,
+    pub loader: &'a dyn Loader,
+}
+
+impl Sources<'_> {
+    /// The triangles of a shape; `None` for one that has none, or whose file cannot be used, which is then reported.
+    pub fn mesh(&self, geometry: &Geometry, diagnostics: &mut Diagnostics) -> Option<MeshShape> {
+        match geometry {
+            Geometry::BezierMesh { net, tessellation } => {
+                Some(bezier::tessellate(bezier::patches_of_net(net), *tessellation))
+            }
+            Geometry::Teapot(tessellation) => {
+                let patches = bezier::patches_of_table(&teapot::POINTS, &teapot::PATCHES);
+                Some(bezier::tessellate(patches, *tessellation))
+            }
+            Geometry::Gumbo(tessellation) => {
+                let patches = bezier::patches_of_table(&gumbo::POINTS, &gumbo::PATCHES);
+                Some(bezier::tessellate(patches, *tessellation))
+            }
+            Geometry::FileMesh { file, smooth_normals } => {
+                let mesh = self.load(file).and_then(|(path, bytes)| {
+                    mesh_file::read(&bytes, Path::new(&path)).map_err(|why| unusable(file, &why))
+                });
+                match mesh {
+                    Ok(mesh) => Some(if *smooth_normals { smooth(mesh) } else { mesh }),
+                    Err(diagnostic) => {
+                        diagnostics.push(diagnostic);
+                        None
+                    }
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// Looks for a file on the include path, then where the program runs.
+    fn load(&self, name: &Name) -> Result<(String, Arc<[u8]>), Diagnostic> {
+        let written = Path::new(name.value.strip_prefix("//").unwrap_or(&name.value));
+        let folders = &self.scene.include_folders;
+        for path in folders.iter().map(|folder| folder.join(written)).chain([written.to_path_buf()]) {
+            match self.loader.load(&path) {
+                Ok(bytes) => return Ok((path.display().to_string(), bytes)),
+                Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+                Err(error) => return Err(unusable(name, &error.to_string())),
+            }
+        }
+        let hint = "add the folder that holds it with the line `includepath FOLDER`";
+        Err(Diagnostic::error(name.span, format!("the file `{}` was not found", name.value)).hint(hint))
+    }
+}
+
+fn unusable(name: &Name, why: &str) -> Diagnostic {
+    Diagnostic::error(name.span, format!("the file `{}` cannot be used: {why}", name.value))
+}
+
+/// Gives each vertex the mean of the normals around it, weighted by the areas of their triangles.
+fn smooth(mut mesh: MeshShape) -> MeshShape {
+    let mut normals = vec![Vec3::ZERO; mesh.points.len()];
+    for (index, triangle) in mesh.triangles.iter().enumerate() {
+        let [a, b, c] = mesh.triangle_points(index);
+        // Twice the area long.
+        let normal = math::unit_normal(a, b, c) * (b - a).cross(c - a).length();
+        triangle.iter().for_each(|&vertex| normals[vertex as usize] += normal);
+    }
+    normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+    mesh.normals = PerVertex::Vertex(normals);
+    mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jaspe_scene::description::Tessellation;
+
+    fn mesh(geometry: &Geometry) -> MeshShape {
+        let (scene, loader) = (Scene::default(), jaspe_scene::MemoryLoader::default());
+        Sources { scene: &scene, loader: &loader }.mesh(geometry, &mut Diagnostics::default()).expect("a mesh")
+    }
+
+    fn bounds(mesh: &MeshShape) -> (Vec3, Vec3) {
+        let fold = |pick: fn(Vec3, Vec3) -> Vec3| mesh.points.iter().copied().reduce(pick).expect("points");
+        (fold(Vec3::min), fold(Vec3::max))
+    }
+
+    #[test]
+    fn the_teapot_has_its_size() {
+        let pot = mesh(&Geometry::Teapot(Tessellation::default()));
+        assert_eq!(pot.triangles.len(), 32 * 2 * 64);
+        let (min, max) = bounds(&pot);
+        assert!(min.z.abs() < 1e-3 && (max.z - 120.0).abs() < 1e-3, "{min} {max}");
+        assert!(min.x > -121.0 && min.x < -110.0 && max.x > 135.0 && max.x < 142.0, "{min} {max}");
+        assert!((min.y + 80.0).abs() < 1.0 && (max.y - 80.0).abs() < 1.0, "{min} {max}");
+        // It is the same on both sides of y = 0.
+        assert!((min.y + max.y).abs() < 1e-3);
+    }
+
+    #[test]
+    fn the_elephant_has_its_size() {
+        let (min, max) = bounds(&mesh(&Geometry::Gumbo(Tessellation { subdivs: 4, smooth: true })));
+        assert!(min.cmpge(Vec3::new(0.79, -2.55, -0.92)).all(), "{min}");
+        assert!(max.cmple(Vec3::new(23.55, 16.55, 20.31)).all(), "{max}");
+        assert!((max - min).min_element() > 15.0, "{min} {max}");
+    }
+
+    #[test]
+    fn smooth_normals_are_weighted_by_area() {
+        let points = vec![Vec3::ZERO, Vec3::X * 2.0, Vec3::Y, Vec3::Z];
+        let shape = MeshShape { points, triangles: vec![[0, 1, 2], [0, 2, 3]], ..MeshShape::default() };
+        let PerVertex::Vertex(normals) = smooth(shape).normals else { panic!("smooth") };
+        assert!(normals[0].distance(Vec3::new(1.0, 0.0, 2.0).normalize()) < 1e-6, "{}", normals[0]);
+        assert_eq!(normals[1], Vec3::Z);
+    }
+}
