@@ -33,6 +33,7 @@ use crate::failure::Failure;
 Examples:
   jaspe render scenes/six-materials.sc       writes six-materials.png
   jaspe check my-scene.sc                    what is wrong with it, and where
+  jaspe convert old.sc -o new.sc             the same scene, tidy and in one file
   jaspe textures marble                      the parameters of marble
   jaspe texture wood -o wood.png             one texture on a plane
   jaspe noise improved 0.5 0.25 0.5          prints -0.262939453125
@@ -49,6 +50,7 @@ struct Arguments {
 enum Command {
     Render(command::render::Render),
     Check(command::check::Check),
+    Convert(command::convert::Convert),
     Textures(command::textures::Textures),
     Texture(command::texture::Texture),
     Noise(command::noise::Noise),
@@ -68,6 +70,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse_from(std::env::args_os().map(plain_number)).command {
         Command::Render(render) => render.run(),
         Command::Check(check) => check.run(),
+        Command::Convert(convert) => convert.run(),
         Command::Textures(textures) => textures.run(),
         Command::Texture(texture) => texture.run(),
         Command::Noise(noise) => noise.run(),

@@ -1,4 +1,4 @@
-//! Picture files, written whole or not at all.
+//! Pictures and other files, written whole or not at all.
 
 use std::fs;
 use std::io::{self, Write as _};
@@ -12,8 +12,14 @@ use crate::interrupt;
 /// Where a picture goes and as what: checked before any long work begins.
 #[derive(Debug)]
 pub struct Output {
-    path: PathBuf,
+    target: Target,
     format: Format,
+}
+
+/// Where a file goes: checked before any long work begins.
+#[derive(Debug)]
+pub struct Target {
+    path: PathBuf,
 }
 
 impl Output {
@@ -28,27 +34,39 @@ impl Output {
             None => format,
             Some(bits) => with_bits(format, bits)?,
         };
-        let output = Output { path: path.to_owned(), format };
-        output.check()?;
-        Ok(output)
+        Ok(Output { target: Target::new(path)?, format })
     }
 
     /// The path as it was asked for.
     pub fn path(&self) -> &Path {
-        &self.path
+        &self.target.path
     }
 
     /// Encodes a film, writes it and returns the size of the file.
     pub fn write(&self, film: &Film) -> Result<usize, Failure> {
         let bytes = encode(film, self.format).map_err(|error| {
-            let message = format!("`{}` {error}", self.path.display());
+            let message = format!("`{}` {error}", self.path().display());
             Failure::new(message).hint("choose another format by its extension, such as .png")
         })?;
+        self.target.write(&bytes)?;
+        Ok(bytes.len())
+    }
+}
+
+impl Target {
+    /// Makes sure that the file can be written.
+    pub fn new(path: &Path) -> Result<Self, Failure> {
+        let target = Target { path: path.to_owned() };
+        target.check()?;
+        Ok(target)
+    }
+
+    /// Writes it.
+    pub fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         if interrupt::asked() {
             return Err(Failure::Interrupted);
         }
-        self.store(&bytes).map_err(|error| Failure::writing(&self.path, plain(&error)))?;
-        Ok(bytes.len())
+        self.store(bytes).map_err(|error| Failure::writing(&self.path, plain(&error)))
     }
 
     /// Beside the final file and then renamed, so that nobody ever sees half a picture.

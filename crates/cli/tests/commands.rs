@@ -150,3 +150,27 @@ fn pictures_that_are_none_are_usage_errors() {
     let run = run_in(here.path(), &["compare", "a.png", "a.png"]);
     assert!(run.status == 2 && run.stderr.contains("cannot read `a.png` as a picture"), "{}", run.stderr);
 }
+
+#[test]
+fn convert_writes_the_same_scene_with_or_without_its_includes() {
+    let here = folder();
+    std::fs::create_dir(here.path().join("out")).expect("a folder");
+    write_scene(here.path(), "part.sc", "shader { name a type constant 1 0 0 }");
+    write_scene(here.path(), "main.sc", "% a remark\ninclude part.sc object { shader a type sphere c 0 0 0 r 1 }");
+    let inlined = run_in(here.path(), &["convert", "main.sc"]);
+    let ball = "object { shader a type sphere c 0 0 0 r 1 }\n";
+    let expected = format!("shader {{ name a type constant color 1 0 0 }}\n{ball}");
+    assert_eq!((inlined.status, inlined.stdout, inlined.stderr.as_str()), (0, expected, ""));
+    let kept = run_in(here.path(), &["convert", "main.sc", "--keep-includes", "-o", "out/new.sc"]);
+    assert_eq!((kept.status, kept.stdout.as_str()), (0, ""));
+    let written = std::fs::read_to_string(here.path().join("out/new.sc")).expect("written");
+    assert_eq!(written, format!("includepath ..\ninclude part.sc\n{ball}"));
+    let checked = run_in(here.path(), &["check", "out/new.sc"]);
+    assert!(checked.stdout.contains("no camera"), "{}", checked.stdout);
+
+    write_scene(here.path(), "bad.sc", "object { shader a type spere }");
+    let bad = run_in(here.path(), &["convert", "bad.sc", "-o", "out/bad.sc"]);
+    assert!(bad.status == 1 && bad.stderr.contains("did you mean `sphere`?"), "{}", bad.stderr);
+    assert!(!here.path().join("out/bad.sc").exists());
+    assert_eq!(run_in(here.path(), &["convert", "missing.sc"]).status, 2);
+}

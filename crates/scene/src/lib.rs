@@ -34,6 +34,7 @@ mod parser;
 mod source;
 mod srgb;
 mod suggest;
+mod writer;
 
 pub use description::{Dialect, Scene};
 pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
@@ -41,3 +42,4 @@ pub use parser::{parse, read, set};
 pub use source::{DiskLoader, Loader, MemoryLoader, Position, Source, Sources, Span, Spanned};
 pub use srgb::{srgb_decode, srgb_encode};
 pub use suggest::nearest;
+pub use writer::{Includes, write};

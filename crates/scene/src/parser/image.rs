@@ -55,7 +55,7 @@ const IMAGE: &[Key<()>] = &[
 ];
 
 /// Samplers by their names in the format.
-const SAMPLERS: &[(&str, Sampler)] =
+pub(crate) const SAMPLERS: &[(&str, Sampler)] =
     &[("bucket", Sampler::Bucket), ("ipr", Sampler::Fast), ("fast", Sampler::Fast), ("multipass", Sampler::Multipass)];
 
 pub(super) fn image(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {

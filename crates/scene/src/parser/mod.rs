@@ -34,7 +34,9 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::lexer::{Lexer, Syntax, Token};
 use crate::source::{Loader, Span};
 
+pub(crate) use image::SAMPLERS;
 pub use set::set;
+pub(crate) use statement::FILTERS;
 
 /// Reads the scene at `path`, with everything that it includes.
 ///

@@ -211,7 +211,7 @@ fn accel(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
 }
 
 /// Filters by their names in the format.
-const FILTERS: &[(&str, Filter)] = &[
+pub(crate) const FILTERS: &[(&str, Filter)] = &[
     ("box", Filter::Box),
     ("triangle", Filter::Triangle),
     ("gaussian", Filter::Gaussian),
