@@ -30,12 +30,13 @@
 //! | `Cellular` | distances to feature points, \[Worley 1996\]: see [`Cellular`] | [0, 1.74] for F1 | 0.52 | 0.52 |
 //! | `White` | a random value per cell | [-1, 1] | 0 | 0.5 |
 //!
-//! All have two and three dimensions (two are the slice z = 0 of three; cellular noise has its feature points in the plane
-//! then), a seed (0 is the published table), and, but for simplex noise, any integer period along each axis:
+//! All have one to four dimensions (one and two are slices of three at zero; cellular noise has its feature points in the
+//! dimensions of the point), a seed (0 is the published table), and, but for simplex noise, any integer period along each axis:
 //! [`Noise::with_period`]. The first three and simplex noise repeat after 256 cells in any case.
 //!
 //! Sums add octaves plainly, by their absolute value, or as multifractals ([`Combine`]), with any lacunarity and gain; the
 //! last octave may fade in ([`Sum::with_octaves`]), and [`Sum::fill_filtered`] fades what a sample's footprint cannot resolve.
+//! [`Noise::fill_with_gradient`] and [`Sum::fill_with_gradient`] give exact gradients with the values.
 //!
 //! # Promises
 //!
@@ -59,6 +60,7 @@
 #![deny(unsafe_code)]
 
 mod basis;
+mod dispatch;
 mod filter;
 pub mod math;
 mod noise;

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use crate::basis::cellular::{Cellular, Feature, Metric};
 use crate::basis::{Basis, Period, Tables, cellular, classic, improved, lattice, simplex, value, white};
+use crate::dispatch::{Evaluate, OverSlices, over_slices};
 use crate::number::{Dual, Real};
-use crate::simd::{self, Kernel, Level, Terms};
+use crate::simd::{self, FEW, Level, Terms};
 
 /// A noise: points in, numbers out. Cheap to clone; immutable.
 #[derive(Debug, Clone)]
@@ -16,6 +17,8 @@ pub struct Noise {
     period: Period,
     cellular: Cellular,
     tables: Arc<Tables>,
+    /// Whether this is the noise that the kernels made by hand are for.
+    has_kernel: bool,
 }
 
 /// Why [`Noise::with_period`] refused.
@@ -31,7 +34,7 @@ pub struct PeriodError {
 
 impl fmt::Display for PeriodError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let axis = ["x", "y", "z"][self.axis.min(2)];
+        let axis = ["x", "y", "z", "w"][self.axis.min(3)];
         match self.longest {
             0 => write!(formatter, "this noise repeats along no axis, found a period of {} along {axis}", self.period),
             longest => write!(formatter, "expected a period up to {longest} along {axis}, found {}", self.period),
@@ -47,21 +50,33 @@ impl Noise {
 
     /// The noise of this basis and seed. Seed 0 has the published permutation, other seeds a shuffle of it.
     pub fn new(basis: Basis, seed: u64) -> Self {
-        Noise { basis, seed, period: [0.0; 3], cellular: Cellular::default(), tables: Arc::new(Tables::new(seed)) }
+        Noise {
+            basis,
+            seed,
+            period: [0.0; 4],
+            cellular: Cellular::default(),
+            tables: Arc::new(Tables::new(seed)),
+            has_kernel: basis == Basis::Improved,
+        }
     }
 
-    /// The same noise, repeating after so many cells along x, y and z: the value at p and at p + period are the same
+    /// The same noise, repeating after so many cells along each axis that is named, from x on: the value at p and at p + period are the same
     /// bits wherever single precision represents both points exactly. 0 leaves an axis at the 256 of the noises with a
     /// table, and without a period otherwise.
     ///
     /// # Errors
     /// When a period is longer than [`Noise::LONGEST_PERIOD`], and for simplex noise, whose lattice is skewed.
-    pub fn with_period(mut self, period: [u32; 3]) -> Result<Self, PeriodError> {
+    pub fn with_period<const D: usize>(mut self, period: [u32; D]) -> Result<Self, PeriodError> {
         let longest = if self.basis == Basis::Simplex { 0 } else { Self::LONGEST_PERIOD };
         if let Some(axis) = period.iter().position(|&cells| cells > longest) {
             return Err(PeriodError { axis, period: period[axis], longest });
         }
-        self.period = period.map(f64::from);
+        const { assert!(D <= 4, "a noise has up to four dimensions") };
+        self.period = [0.0; 4];
+        for (cells, wanted) in self.period.iter_mut().zip(period) {
+            *cells = f64::from(wanted);
+        }
+        self.has_kernel = self.basis == Basis::Improved && self.period == [0.0; 4];
         Ok(self)
     }
 
@@ -103,19 +118,21 @@ impl Noise {
         self.seed
     }
 
-    /// The value at a point of two or three dimensions (two: the slice z = 0), in the precision of the number type.
+    /// The value at a point of one to four dimensions, in the precision of the number type. (Below three, but for
+    /// cellular noise: the slice of three in which the other coordinates are 0.)
     #[inline(always)]
     pub fn value<R: Real, const D: usize>(&self, point: [R; D]) -> R {
-        self.octave(point, 1.0)
+        self.octave::<R, D, false>(point, 1.0).value
     }
 
     /// The value at a point, and its exact derivative along each axis.
+    #[inline(always)]
     pub fn value_and_gradient<R: Real, const D: usize>(&self, point: [R; D]) -> (R, [R; D]) {
-        let dual = self.value(Dual::point(point));
-        (dual.value, dual.gradient)
+        let sample = self.octave::<R, D, true>(point, 1.0);
+        (sample.value, sample.gradient)
     }
 
-    /// The values at many points: one slice of coordinates per axis (two or three), one slice for the values. The same
+    /// The values at many points: one slice of coordinates per axis (one to four), one slice for the values. The same
     /// bits as [`Noise::value`] in single precision.
     ///
     /// # Panics
@@ -124,101 +141,150 @@ impl Noise {
         self.fill_at(simd::level(), points, values);
     }
 
-    /// The value at one point in single precision, with the machine's vector instructions.
-    #[inline]
-    pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
-        let mut value = None;
-        if D == 3 && self.has_kernel() {
-            value = simd::improved_at(simd::level(), &self.tables, [point[0], point[1], point[D - 1]]);
-        }
-        value.unwrap_or_else(|| self.value(point))
-    }
-
     /// [`Noise::fill`] with the instructions of a level, at most those of the machine. For tests and measurements.
     ///
     /// # Panics
     /// When the slices differ in length.
     pub fn fill_at<const D: usize>(&self, level: Level, points: [&[f32]; D], values: &mut [f32]) {
-        self.sum_with(level, &Terms::ONE, points, values, |level, points, values| map(self, level, points, values));
+        assert!(points.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        if values.len() <= FEW && level == simd::level() {
+            for (i, value) in values.iter_mut().enumerate() {
+                *value = self.at(points.map(|coordinates| coordinates[i]));
+            }
+            return;
+        }
+        Octave { noise: self, frequency: 1.0 }.fill(level, &points, values, &mut []);
     }
 
-    /// Fills `values` with a sum of this noise, as far as there is a kernel made by hand for it, the rest by the generic
-    /// evaluation `rest` of the same sum.
-    pub(crate) fn sum_with<const D: usize>(
+    /// The values at many points, and the exact derivatives along each axis: the same bits as
+    /// [`Noise::value_and_gradient`] in single precision.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn fill_with_gradient<const D: usize>(
+        &self,
+        points: [&[f32]; D],
+        values: &mut [f32],
+        gradient: [&mut [f32]; D],
+    ) {
+        self.fill_with_gradient_at(simd::level(), points, values, gradient);
+    }
+
+    /// [`Noise::fill_with_gradient`] with the instructions of a level, at most those of the machine. For tests and
+    /// measurements.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn fill_with_gradient_at<const D: usize>(
+        &self,
+        level: Level,
+        points: [&[f32]; D],
+        values: &mut [f32],
+        mut gradient: [&mut [f32]; D],
+    ) {
+        assert!(points.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        assert!(gradient.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        Octave { noise: self, frequency: 1.0 }.fill(level, &points, values, &mut gradient);
+    }
+
+    /// The value at one point in single precision, with the machine's vector instructions.
+    #[inline]
+    pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
+        let kernel = if D == 3 && self.has_kernel {
+            simd::improved_at(&self.tables, [point[0], point[1], point[D - 1]])
+        } else {
+            None
+        };
+        kernel.unwrap_or_else(|| self.value_at(&point))
+    }
+
+    /// The value at one point in single precision, by the generic evaluation.
+    #[inline(never)]
+    fn value_at(&self, point: &[f32]) -> f32 {
+        match *point {
+            [x] => self.value([x]),
+            [x, y] => self.value([x, y]),
+            [x, y, z] => self.value([x, y, z]),
+            [x, y, z, w] => self.value([x, y, z, w]),
+            _ => unreachable!("there are one to four dimensions"),
+        }
+    }
+
+    /// The sums at the first points by a kernel made by hand, if there is one for this noise; returns how many.
+    pub(crate) fn sum_fast<const N: usize>(
         &self,
         level: Level,
         terms: &Terms,
-        points: [&[f32]; D],
-        values: &mut [f32],
-        rest: impl Fn(Level, [&[f32]; D], &mut [f32]),
-    ) {
-        let mut done = 0;
-        if self.has_kernel() {
-            done = simd::sum_improved(level, &self.tables, terms, points, values);
+        points: &[&[f32]],
+        outputs: [&mut [f32]; N],
+    ) -> usize {
+        match *points {
+            [x, y, z] if self.has_kernel => simd::sum_improved(level, &self.tables, terms, [x, y, z], outputs),
+            _ => 0,
         }
-        if values.len() - done <= simd::FEW {
-            while done < values.len() {
-                let Some(sum) = self.sum_at(level, terms, points.map(|coordinates| coordinates[done])) else { break };
-                values[done] = sum;
-                done += 1;
-            }
-        }
-        if done < values.len() {
-            rest(level, points.map(|coordinates| &coordinates[done..]), &mut values[done..]);
-        }
-    }
-
-    /// Whether this is the noise that the kernels made by hand are for.
-    #[inline]
-    fn has_kernel(&self) -> bool {
-        self.basis == Basis::Improved && self.period == [0.0; 3]
     }
 
     /// The sum at one point by the kernel made by hand, if there is one, or with its octaves in the lanes of vectors, if
     /// there are several (and no period, which would differ from octave to octave).
     pub(crate) fn sum_at<const D: usize>(&self, level: Level, terms: &Terms, point: [f32; D]) -> Option<f32> {
-        if D == 3 && self.has_kernel() && level >= Level::Avx2 {
-            return simd::sum_improved_at(level, &self.tables, terms, [point[0], point[1], point[D - 1]]);
+        let level = level.min(simd::machine_level());
+        if D == 3 && self.has_kernel && level >= Level::Avx2 {
+            return Some(simd::sum_improved_at(level, &self.tables, terms, [point[0], point[1], point[D - 1]]));
         }
-        if terms.octaves < 2 || self.period != [0.0; 3] || level == Level::Scalar {
+        if terms.octaves() < 2 || self.period != [0.0; 4] || level == Level::Scalar {
             return None;
         }
         const LANES: usize = 16;
-        let (mut frequency, mut sum) = (1.0, 0.0);
-        for start in (0..terms.octaves).step_by(LANES) {
-            let count = LANES.min((terms.octaves - start) as usize);
+        let mut sum = 0.0;
+        for (frequencies, amplitudes) in terms.frequencies.chunks(LANES).zip(terms.amplitudes.chunks(LANES)) {
             let mut scaled = [[0.0; LANES]; D];
-            for lane in 0..count {
-                for (scaled, coordinate) in scaled.iter_mut().zip(point) {
-                    scaled[lane] = coordinate * frequency as f32;
+            for (scaled, coordinate) in scaled.iter_mut().zip(point) {
+                for (scaled, frequency) in scaled.iter_mut().zip(frequencies) {
+                    *scaled = coordinate * frequency;
                 }
-                frequency *= terms.lacunarity;
             }
             let mut noises = [0.0; LANES];
             // (Whole vectors: what fills them up costs nothing.)
-            let padded = if level == Level::Avx512 { LANES } else { count.next_multiple_of(8) };
-            map(self, level, scaled.each_ref().map(|axis| &axis[..padded]), &mut noises[..padded]);
-            for (octave, noise) in (start..).zip(&noises[..count]) {
-                sum += terms.amplitude(octave) as f32 * if terms.absolute { noise.abs() } else { *noise };
+            let padded = if level == Level::Avx512 { LANES } else { frequencies.len().next_multiple_of(8) };
+            let points = scaled.each_ref().map(|axis| &axis[..padded]);
+            Octave { noise: self, frequency: 1.0 }.values(level, &points, &mut noises[..padded]);
+            for (amplitude, noise) in amplitudes.iter().zip(noises) {
+                sum += amplitude * if terms.absolute { noise.abs() } else { noise };
             }
         }
         Some(sum)
     }
 
-    /// The value at a point that has been multiplied by `frequency`, which lengthens the period (counted in cells).
+    /// The value (and with `G` the gradient) at a point that has been multiplied by `frequency`, which lengthens the period
+    /// (counted in cells).
     #[inline(always)]
-    pub(crate) fn octave<R: Real, const D: usize>(&self, point: [R; D], frequency: f64) -> R {
-        const { assert!(D == 2 || D == 3, "a noise has two or three dimensions") };
-        let [x, y, z] = self.period;
-        let period = [x * frequency, y * frequency, z * frequency];
+    pub(crate) fn octave<R: Real, const D: usize, const G: bool>(&self, point: [R; D], frequency: f64) -> Dual<R, D> {
+        const { assert!(D >= 1 && D <= 4, "a noise has one to four dimensions") };
+        // Vectors must be inlined, one copy for each place; of the rest one copy is enough.
+        if R::SCALAR {
+            self.octave_once::<R, D, G>(point, frequency)
+        } else {
+            self.octave_here::<R, D, G>(point, frequency)
+        }
+    }
+
+    #[inline(never)]
+    fn octave_once<R: Real, const D: usize, const G: bool>(&self, point: [R; D], frequency: f64) -> Dual<R, D> {
+        self.octave_here::<R, D, G>(point, frequency)
+    }
+
+    #[inline(always)]
+    fn octave_here<R: Real, const D: usize, const G: bool>(&self, point: [R; D], frequency: f64) -> Dual<R, D> {
+        let [x, y, z, w] = self.period;
+        let period = [x * frequency, y * frequency, z * frequency, w * frequency];
         match self.basis {
-            Basis::Improved => improved::value(&self.tables, point, &period),
-            Basis::Classic => classic::value(&self.tables, point, &period),
-            Basis::Lattice => lattice::value(&self.tables, point, &period),
-            Basis::Value => value::value(&self.tables, point, &period),
-            Basis::Simplex => simplex::value(&self.tables, point),
-            Basis::Cellular => cellular::value(&self.tables, &self.cellular, point, &period),
-            Basis::White => white::value(&self.tables, point, &period),
+            Basis::Improved => improved::evaluate::<R, D, G>(&self.tables, point, &period),
+            Basis::Classic => classic::evaluate::<R, D, G>(&self.tables, point, &period),
+            Basis::Lattice => lattice::evaluate::<R, D, G>(&self.tables, point, &period),
+            Basis::Value => value::evaluate::<R, D, G>(&self.tables, point, &period),
+            Basis::Simplex => simplex::evaluate::<R, D, G>(&self.tables, point),
+            Basis::Cellular => cellular::evaluate::<R, D, G>(&self.tables, &self.cellular, point, &period),
+            Basis::White => white::evaluate::<R, D>(&self.tables, point, &period),
         }
     }
 }
@@ -230,37 +296,47 @@ impl PartialEq for Noise {
     }
 }
 
-impl<const D: usize> Kernel<D> for Noise {
+/// One octave of a sum: the noise at points that have been multiplied by the frequency.
+pub(crate) struct Octave<'a> {
+    pub noise: &'a Noise,
+    pub frequency: f64,
+}
+
+impl Octave<'_> {
+    /// The values at many points and, if there are slices for it, their gradient, as fast as can be.
+    pub fn fill(&self, level: Level, points: &[&[f32]], values: &mut [f32], gradient: &mut [&mut [f32]]) {
+        let noise = self.noise;
+        let done = match gradient {
+            [] => noise.sum_fast(level, &Terms::ONE, points, [&mut *values]),
+            [x, y, z] => noise.sum_fast(level, &Terms::ONE, points, [&mut *values, x, y, z]),
+            _ => 0,
+        };
+        if done == values.len() {
+            return;
+        }
+        let mut rest: [&[f32]; 4] = [&[]; 4];
+        for (rest, coordinates) in rest.iter_mut().zip(points) {
+            *rest = &coordinates[done..];
+        }
+        let (points, values) = (&rest[..points.len()], &mut values[done..]);
+        match gradient {
+            [] => self.values(level, points, values),
+            [x] => self.gradients(level, points, values, &mut [&mut x[done..]]),
+            [x, y] => self.gradients(level, points, values, &mut [&mut x[done..], &mut y[done..]]),
+            [x, y, z] => self.gradients(level, points, values, &mut [&mut x[done..], &mut y[done..], &mut z[done..]]),
+            [x, y, z, w] => {
+                let gradient = &mut [&mut x[done..], &mut y[done..], &mut z[done..], &mut w[done..]];
+                self.gradients(level, points, values, gradient);
+            }
+            _ => unreachable!("there are one to four dimensions"),
+        }
+    }
+}
+
+impl Evaluate for Octave<'_> {
     #[inline(always)]
-    fn run<R: Real>(&self, point: [R; D]) -> R {
-        self.value(point)
+    fn evaluate<R: Real, const D: usize, const G: bool>(&self, point: [R; D]) -> Dual<R, D> {
+        self.noise.octave::<R, D, G>(point, self.frequency)
     }
 }
-
-/// An evaluation of two and of three dimensions over slices. The two are compiled here, once, and not again in each crate
-/// that evaluates noise.
-pub(crate) trait Map {
-    fn map_plane(&self, level: Level, points: [&[f32]; 2], values: &mut [f32]);
-    fn map_space(&self, level: Level, points: [&[f32]; 3], values: &mut [f32]);
-}
-
-/// The one for this number of dimensions.
-pub(crate) fn map<const D: usize>(map: &impl Map, level: Level, points: [&[f32]; D], values: &mut [f32]) {
-    const { assert!(D == 2 || D == 3, "a noise has two or three dimensions") };
-    match D {
-        2 => map.map_plane(level, [points[0], points[1]], values),
-        _ => map.map_space(level, [points[0], points[1], points[D - 1]], values),
-    }
-}
-
-impl Map for Noise {
-    #[inline(never)]
-    fn map_plane(&self, level: Level, points: [&[f32]; 2], values: &mut [f32]) {
-        simd::map_at(level, self, points, values);
-    }
-
-    #[inline(never)]
-    fn map_space(&self, level: Level, points: [&[f32]; 3], values: &mut [f32]) {
-        simd::map_at(level, self, points, values);
-    }
-}
+over_slices!(Octave<'_>);

@@ -59,13 +59,13 @@ pub fn permutation(seed: u64) -> [u8; 256] {
 
 /// 256 random unit vectors, the components apart, evenly spread over the sphere: points in the cube, those outside the
 /// ball (or too close to its centre to have a direction) are drawn again, the others normalised.
-pub fn unit_vectors(seed: u64) -> [[f64; 256]; 3] {
+pub fn unit_vectors<const D: usize>(seed: u64) -> [[f64; 256]; D] {
     let mut random = Random::new(seed ^ 0x6a73_7065_6772_6164);
-    let mut components = [[0.0; 256]; 3];
+    let mut components = [[0.0; 256]; D];
     for i in 0..256 {
         let (vector, length) = loop {
-            let vector = [random.signed_unit(), random.signed_unit(), random.signed_unit()];
-            let square = vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2];
+            let vector: [f64; D] = std::array::from_fn(|_| random.signed_unit());
+            let square = vector.iter().fold(0.0, |sum, part| sum + part * part);
             if (0.0001..=1.0).contains(&square) {
                 break (vector, square.sqrt());
             }
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn gradients_have_unit_length_and_no_preferred_direction() {
-        let components = unit_vectors(0);
+        let components = unit_vectors::<3>(0);
         for i in 0..256 {
             let square: f64 = components.iter().map(|component| component[i] * component[i]).sum();
             assert!((square - 1.0).abs() < 1e-15, "vector {i}: {square}");

@@ -72,6 +72,60 @@ fn every_basis_and_sum_has_the_same_bits_at_every_level() {
     }
 }
 
+/// Holds values and gradients over slices to the evaluation one by one, in any number of dimensions, at every level.
+fn check_dimensions<const D: usize>(basis: Basis) {
+    let columns: [Vec<f32>; D] = std::array::from_fn(|axis| coordinates(700, 20 + axis as u64));
+    let points = columns.each_ref().map(Vec::as_slice);
+    for period in [[0; D], std::array::from_fn(|axis| [3, 0, 300, 7][axis])] {
+        let Ok(noise) = Noise::new(basis, 4).with_period(period) else { continue };
+        for combine in [None].into_iter().chain(Combine::ALL.iter().copied().map(Some)) {
+            // Without a combination, the noise alone.
+            let sum = Sum::new(noise.clone(), combine.unwrap_or(Combine::Plain), 3).with_lacunarity(1.9);
+            let one_by_one: Vec<(f32, [f32; D])> = (0..700)
+                .map(|i| {
+                    let point = columns.each_ref().map(|axis| axis[i]);
+                    let value = if combine.is_none() { noise.value(point) } else { sum.value(point) };
+                    let with_gradient =
+                        if combine.is_none() { noise.value_and_gradient(point) } else { sum.value_and_gradient(point) };
+                    assert!(same(value, with_gradient.0), "{basis:?} {combine:?} in {D}: {with_gradient:?}, {value}");
+                    with_gradient
+                })
+                .collect();
+            for level in Level::ALL {
+                let name = format!("{basis:?} {period:?} {combine:?} at {level:?}");
+                let (mut values, mut slopes) = (vec![1.0; 700], [(); D].map(|()| vec![1.0; 700]));
+                let gradient = slopes.each_mut().map(Vec::as_mut_slice);
+                if combine.is_none() {
+                    noise.fill_with_gradient_at(level, points, &mut values, gradient);
+                } else {
+                    sum.fill_with_gradient_at(level, points, &mut values, gradient);
+                }
+                let mut alone = vec![1.0; 700];
+                if combine.is_none() {
+                    noise.fill_at(level, points, &mut alone);
+                } else {
+                    sum.fill_at(level, points, &mut alone);
+                }
+                for (i, (value, slope)) in one_by_one.iter().enumerate() {
+                    assert!(same(alone[i], *value), "{name}, point {i}: {} {value}", alone[i]);
+                    assert!(same(values[i], *value), "{name}, point {i}");
+                    assert!((0..D).all(|axis| same(slopes[axis][i], slope[axis])), "{name}, point {i}: {slope:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn gradients_have_the_same_bits_at_every_level_in_every_number_of_dimensions() {
+    for &basis in Basis::ALL {
+        check_dimensions::<1>(basis);
+        check_dimensions::<2>(basis);
+        check_dimensions::<3>(basis);
+        check_dimensions::<4>(basis);
+    }
+}
+
 /// One of the elementary functions, by its place in a list.
 struct Function(usize);
 

@@ -1,10 +1,11 @@
 //! Cellular noise: distances to random feature points, one in each cell.
 //!
 //! Source: S. Worley, "A Cellular Texture Basis Function", SIGGRAPH 1996; with one point per cell instead of a random
-//! number of them, of which the 27 (in the plane 9) nearest cells are searched.
+//! number of them, of which the 3ᴰ nearest cells in D dimensions are searched.
 
-use super::{Period, Tables, hash, plus_zero, split};
-use crate::number::{Integer, Real};
+use super::corners::plus_zero;
+use super::{Period, Tables, hash, nan_where_none, split};
+use crate::number::{Dual, Integer, Real};
 
 /// How the distance between two points is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -48,90 +49,185 @@ impl Default for Cellular {
     }
 }
 
-/// The nearest feature points so far.
-struct Nearest<R: Real> {
-    first: R,
-    second: R,
-    bits: R,
-}
+/// What is kept of the feature points: only the distance to the nearest one, those to two, or the nearest one's number.
+const ONE: u8 = 1;
+const TWO: u8 = 2;
+const NUMBER: u8 = 3;
 
-/// The noise at a point of two or three dimensions; in two, feature points and distances lie in the plane.
+/// The noise at a point. Feature points and distances lie in its dimensions.
 #[inline(always)]
-pub(crate) fn value<R: Real, const D: usize>(
+pub(crate) fn evaluate<R: Real, const D: usize, const G: bool>(
     tables: &Tables,
     cellular: &Cellular,
     point: [R; D],
     period: &Period,
-) -> R {
-    let (cell, offset) = split(point);
-    let far = R::constant(1e9);
-    let mut nearest = Nearest { first: far, second: far, bits: R::constant(0.0) };
-    let range = |deep: bool| if deep { -1..=1 } else { 0..=0 };
-    for dz in range(D == 3) {
-        let (mut z, mut z_offset) = (R::Int::constant(0), None);
-        if D == 3 {
-            z = hash::coordinate(&cell, D - 1, f64::from(dz), period);
-            z_offset = Some(offset[D - 1] - R::constant(f64::from(dz)));
+) -> Dual<R, D> {
+    // A search for each case: what it does not need costs nothing. (The metric costs little.)
+    let metric = cellular.metric;
+    let mut sample = match cellular.feature {
+        Feature::First if metric == Metric::Euclidean => {
+            search::<R, D, G, ONE>(tables, cellular, Metric::Euclidean, point, period)
         }
-        for dy in range(true) {
-            let y = hash::coordinate(&cell, 1, f64::from(dy), period);
-            let y_offset = offset[1] - R::constant(f64::from(dy));
-            for dx in range(true) {
-                let x = hash::coordinate(&cell, 0, f64::from(dx), period);
-                let x_offset = offset[0] - R::constant(f64::from(dx));
-                let bits = hash::bits::<R>(tables.hash_seed, x, y, z);
-                visit(&mut nearest, cellular, bits, (x_offset, y_offset, z_offset));
+        Feature::First => search::<R, D, G, ONE>(tables, cellular, metric, point, period),
+        Feature::Second | Feature::Difference => search::<R, D, G, TWO>(tables, cellular, metric, point, period),
+        Feature::Cell => search::<R, D, false, NUMBER>(tables, cellular, metric, point, period),
+    };
+    let (_, offset) = split(point);
+    sample.value = plus_zero(nan_where_none(sample.value, &offset));
+    sample
+}
+
+/// How far a feature point is, and where it is seen from.
+#[derive(Clone, Copy)]
+struct Found<R, const D: usize> {
+    distance: R,
+    offset: [R; D],
+}
+
+impl<R: Real, const D: usize> Found<R, D> {
+    /// `yes` where the mask is set, else `no`; offsets with `G` only.
+    #[inline(always)]
+    fn select<const G: bool>(mask: R::Mask, yes: Self, no: Self) -> Self {
+        let mut found = no;
+        found.distance = R::select(mask, yes.distance, no.distance);
+        if G {
+            for axis in 0..D {
+                found.offset[axis] = R::select(mask, yes.offset[axis], no.offset[axis]);
+            }
+        }
+        found
+    }
+}
+
+/// The noise by a search for the nearest feature points.
+#[inline(always)]
+fn search<R: Real, const D: usize, const G: bool, const KEPT: u8>(
+    tables: &Tables,
+    cellular: &Cellular,
+    metric: Metric,
+    point: [R; D],
+    period: &Period,
+) -> Dual<R, D> {
+    let (cell, offset) = split(point);
+    let grid = Grid::new(cellular.jitter);
+    // Along each axis the hashes of three cells, and the point as seen from their feature points' middles.
+    let (mut hashes, mut offsets) = ([[R::Int::constant(0); 3]; 4], [[R::constant(0.0); 3]; 4]);
+    for axis in 0..D {
+        for step in 0..3 {
+            let steps = step as f64 - 1.0;
+            hashes[axis][step] = hash::coordinate(&cell, axis, steps, period);
+            offsets[axis][step] =
+                (offset[axis] - R::constant(steps + 0.5)) * R::constant(grid.units) + R::constant(grid.middle);
+        }
+    }
+    let far = Found { distance: R::constant(1e30), offset: [R::constant(0.0); D] };
+    let (mut first, mut second, mut number) = (far, far, R::constant(0.0));
+    let around = |axis: usize| if axis < D { tables.around } else { 1 };
+    for w in 0..around(3) {
+        for z in 0..around(2) {
+            for y in 0..around(1) {
+                let row = hashes[1][y] ^ hashes[2][z] ^ hashes[3][w] ^ R::Int::constant(tables.hash_seed);
+                for x in 0..3 {
+                    let bits = hash::bits::<R>(row ^ hashes[0][x]);
+                    let corner = [offsets[0][x], offsets[1][y], offsets[2][z], offsets[3][w]];
+                    let found = grid.visit::<R, D>(metric, bits, corner);
+                    if KEPT == NUMBER {
+                        let closer = found.distance.less(first.distance);
+                        number = R::select(closer, hash::signed(bits), number);
+                    }
+                    if !G {
+                        if KEPT == TWO {
+                            second.distance = second.distance.min(first.distance.max(found.distance));
+                        }
+                        first.distance = first.distance.min(found.distance);
+                        continue;
+                    }
+                    let closer = found.distance.less(first.distance);
+                    if KEPT == TWO {
+                        let between = found.distance.less(second.distance);
+                        let middle = Found::select::<G>(between, found, second);
+                        second = Found::select::<G>(closer, first, middle);
+                    }
+                    first = Found::select::<G>(closer, found, first);
+                }
             }
         }
     }
-    let mut value = finish(nearest, cellular);
-    // Nothing, or NaN where a coordinate is none.
-    for part in offset {
-        value = value + part * R::constant(0.0);
+    if KEPT == NUMBER {
+        return Dual { value: number, gradient: [R::constant(0.0); D] };
     }
-    plus_zero(value)
-}
-
-/// Takes one feature point into account; the offset is that from the corner of its cell.
-#[inline(always)]
-fn visit<R: Real>(nearest: &mut Nearest<R>, cellular: &Cellular, bits: R::Int, offset: (R, R, Option<R>)) {
-    let (x, y, z) = offset;
-    let dx = (x - feature::<R>(bits, cellular.jitter)).abs();
-    let dy = (y - feature::<R>(bits.shift_right(10), cellular.jitter)).abs();
-    let dz = match z {
-        Some(z) => (z - feature::<R>(bits.shift_right(20), cellular.jitter)).abs(),
-        None => R::constant(0.0),
-    };
-    // (Euclidean distances are compared by their squares.)
-    let distance = match cellular.metric {
-        Metric::Euclidean => dx * dx + dy * dy + dz * dz,
-        Metric::Manhattan => dx + dy + dz,
-        Metric::Chebyshev => R::select(dx.less(dy), dy, dx).max(dz),
-    };
-    let closer = distance.less(nearest.first);
-    let between = distance.less(nearest.second);
-    nearest.second = R::select(closer, nearest.first, R::select(between, distance, nearest.second));
-    nearest.first = R::select(closer, distance, nearest.first);
-    nearest.bits = R::select(closer, hash::signed(bits), nearest.bits);
-}
-
-/// A coordinate of a feature point within its cell, from the low ten bits.
-#[inline(always)]
-fn feature<R: Real>(bits: R::Int, jitter: f64) -> R {
-    let unit = R::from_int(bits & R::Int::constant(1023)) - R::constant(511.5);
-    unit * R::constant(jitter / 1024.0) + R::constant(0.5)
-}
-
-#[inline(always)]
-fn finish<R: Real>(nearest: Nearest<R>, cellular: &Cellular) -> R {
-    let (mut first, mut second) = (nearest.first, nearest.second);
-    if cellular.metric == Metric::Euclidean {
-        (first, second) = (first.sqrt(), second.sqrt());
+    let first = grid.distance::<R, D, G>(metric, first);
+    if KEPT == ONE {
+        return first;
     }
-    match cellular.feature {
-        Feature::First => first,
-        Feature::Second => second,
-        Feature::Difference => second - first,
-        Feature::Cell => nearest.bits,
+    let second = grid.distance::<R, D, G>(metric, second);
+    if cellular.feature == Feature::Second { second } else { second - first }
+}
+
+/// The grid on which feature points lie within their cells: 1024 places along each axis, spread by the
+/// jitter. Distances are counted in its units until the search is over.
+struct Grid {
+    /// How many of its units make a cell.
+    units: f64,
+    /// The place of the middle.
+    middle: f64,
+    /// The bits of a place: none without jitter.
+    mask: i32,
+}
+
+impl Grid {
+    #[inline(always)]
+    fn new(jitter: f64) -> Grid {
+        let places = 1024.0;
+        if jitter > 0.0 {
+            Grid { units: places / jitter, middle: (places - 1.0) / 2.0, mask: 1023 }
+        } else {
+            Grid { units: places, middle: 0.0, mask: 0 }
+        }
+    }
+
+    /// The feature point that the bits place in the cell whose middle is `corner` away.
+    #[inline(always)]
+    fn visit<R: Real, const D: usize>(&self, metric: Metric, bits: R::Int, corner: [R; 4]) -> Found<R, D> {
+        let (mut offset, mut distance) = ([R::constant(0.0); D], R::constant(0.0));
+        let mut rest = bits;
+        for axis in 0..D {
+            // Ten bits each from the top; in four dimensions a second round gives as many again.
+            let shift = if axis < 3 { 22 - 10 * axis as u32 } else { 22 };
+            if axis == 3 {
+                rest = hash::bits::<R>(bits);
+            }
+            let place = R::from_int(rest.shift_right(shift) & R::Int::constant(self.mask));
+            offset[axis] = corner[axis] - place;
+            let part = match metric {
+                Metric::Euclidean => offset[axis] * offset[axis],
+                Metric::Manhattan | Metric::Chebyshev => offset[axis].abs(),
+            };
+            distance = match (axis, metric) {
+                (0, _) => part,
+                (_, Metric::Chebyshev) => distance.max(part),
+                _ => distance + part,
+            };
+        }
+        Found { distance, offset }
+    }
+
+    /// The distance in cells, and with `G` its gradient.
+    #[inline(always)]
+    fn distance<R: Real, const D: usize, const G: bool>(&self, metric: Metric, found: Found<R, D>) -> Dual<R, D> {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let length = if metric == Metric::Euclidean { found.distance.sqrt() } else { found.distance };
+        let mut sample = Dual { value: length * R::constant(1.0 / self.units), gradient: [zero; D] };
+        for axis in 0..if G { D } else { 0 } {
+            let offset = found.offset[axis];
+            let sign = R::select(zero.less(offset), one, R::select(offset.less(zero), -one, zero));
+            // At a feature point itself, where there is no slope, the gradient is given as 0.
+            sample.gradient[axis] = match metric {
+                Metric::Euclidean => R::select(zero.less(length), offset / length, zero),
+                Metric::Manhattan => sign,
+                Metric::Chebyshev => R::select(offset.abs().less(length), zero, sign),
+            };
+        }
+        sample
     }
 }

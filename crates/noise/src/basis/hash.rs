@@ -4,7 +4,8 @@ use super::Period;
 use crate::number::{Integer, Real};
 
 /// Odd numbers without a pattern, one for each axis: their products part neighbouring cells in all bits.
-const FACTORS: [i32; 3] = [0x1f12_3bb5_u32 as i32, 0x5916_7d4d_u32 as i32, 0x2d5e_91a3_u32 as i32];
+pub(super) const FACTORS: [i32; 4] =
+    [0x1f12_3bb5_u32 as i32, 0x5916_7d4d_u32 as i32, 0x2d5e_91a3_u32 as i32, 0x6b3f_a26d_u32 as i32];
 
 /// The cell `steps` further along an axis, as an integer times the axis's factor.
 #[inline(always)]
@@ -13,14 +14,20 @@ pub(super) fn coordinate<R: Real, const D: usize>(cell: &[R; D], axis: usize, st
     super::wrap(moved, period[axis]).to_int() * R::Int::constant(FACTORS[axis])
 }
 
-/// 32 random bits of a cell, from its coordinates as [`coordinate`] gives them. The last steps are those of MurmurHash3
-/// (A. Appleby), which let each bit of the input change each bit of the result.
+/// [`coordinate`] of a cell and of the next one.
 #[inline(always)]
-pub(super) fn bits<R: Real>(seed: i32, x: R::Int, y: R::Int, z: R::Int) -> R::Int {
-    let mixed = x ^ y ^ z ^ R::Int::constant(seed);
-    let mixed = (mixed ^ mixed.shift_right(16)) * R::Int::constant(0x85eb_ca6b_u32 as i32);
-    let mixed = (mixed ^ mixed.shift_right(13)) * R::Int::constant(0xc2b2_ae35_u32 as i32);
-    mixed ^ mixed.shift_right(16)
+pub(super) fn ends<R: Real, const D: usize>(cell: &[R; D], axis: usize, period: &Period) -> [R::Int; 2] {
+    [coordinate(cell, axis, 0.0, period), coordinate(cell, axis, 1.0, period)]
+}
+
+/// 32 random bits of a cell, the upper ones better than the lowest, from the exclusive or of a seed and of its
+/// coordinates as [`coordinate`] gives them. Two products by odd numbers, the first folded onto itself: the steps of
+/// MurmurHash3's end (A. Appleby) as far as they reach the upper bits. (The multipliers are his.)
+#[inline(always)]
+pub(super) fn bits<R: Real>(mixed: R::Int) -> R::Int {
+    let mixed = mixed * R::Int::constant(0x85eb_ca6b_u32 as i32);
+    let mixed = mixed ^ mixed.shift_right(15);
+    mixed * R::Int::constant(0xc2b2_ae35_u32 as i32)
 }
 
 /// A number in [-1, 1) from random bits: the upper 24, which both precisions hold.

@@ -1,66 +1,111 @@
-//! Improved noise: the listing of [Perlin 2002].
+//! Improved noise: the listing of [Perlin 2002], and in four dimensions the one that he published as `ImprovedNoise4D`.
 
-use super::{Period, Tables, bilinear, columns, corners, lerp, plus_zero, split};
-use crate::number::{Integer, Real};
+use super::corners::{Corners, Curve, blend, ends, hash_axis, hash_zero, with_plus_zeros};
+use super::{Period, Tables, split};
+use crate::number::{Dual, Integer, Real};
 
 /// The edge code (see [`Real::edge_dot`]) of each hash value's low four bits, from the function `grad` of the listing:
 /// x+y, y−x, x−y, −x−y, x+z, z−x, x−z, −x−z, y+z, z−y, y−z, −y−z, and again x+y, z−y, y−x, −y−z.
 pub(crate) const EDGE_CODES: [u8; 16] = [0, 9, 1, 8, 2, 11, 3, 10, 4, 13, 5, 12, 0, 13, 9, 12];
 
-/// The curve 6t⁵ − 15t⁴ + 10t³, whose slope and curvature vanish at both ends.
+/// The noise at a point; below three dimensions the other coordinates are 0.
 #[inline(always)]
-pub(super) fn fade<R: Real>(t: R) -> R {
-    t * t * t * (t * (t * R::constant(6.0) - R::constant(15.0)) + R::constant(10.0))
-}
-
-/// The noise at a point of two or three dimensions; the other coordinate is 0.
-#[inline(always)]
-pub(crate) fn value<R: Real, const D: usize>(tables: &Tables, point: [R; D], period: &Period) -> R {
+pub(crate) fn evaluate<R: Real, const D: usize, const G: bool>(
+    tables: &Tables,
+    point: [R; D],
+    period: &Period,
+) -> Dual<R, D> {
     let (cell, offset) = split(point);
-    let (x, y) = (offset[0], offset[1]);
-    let one = R::constant(1.0);
-    let (x1, y1) = (x - one, y - one);
-    let (u, v) = (fade(x), fade(y));
-    let columns = columns(tables, cell[0], cell[1], period);
-    if D == 2 {
-        let mut codes = columns;
-        for i in 0..4 {
-            codes[i] = R::lookup(&tables.edges, columns[i]);
+    let mut codes = [R::Int::constant(0); 16];
+    if D == 4 {
+        let hashes = super::corners::hash(tables, &cell, period);
+        return with_plus_zeros::<R, D, G>(blend_four::<R, D, G>(hashes, offset));
+    }
+    for axis in 0..D.min(2) {
+        hash_axis(tables, &mut codes, axis, &cell, period);
+    }
+    if D == 1 {
+        hash_zero::<R, D>(tables, &mut codes);
+    }
+    let count = 1 << D.min(2);
+    for i in 0..count {
+        if D < 3 {
+            codes[i] = R::lookup(&tables.edges, codes[i]);
+        } else if period[2] == 0.0 {
+            codes[i] = R::lookup(&tables.edges, codes[i] + cell[D - 1].to_int());
+            codes[i + count] = codes[i].shift_right(4);
+        } else {
+            let (low, high) = ends(cell[D - 1], period[2]);
+            let column = codes[i];
+            codes[i] = R::lookup(&tables.edges, column + low);
+            codes[i + count] = R::lookup(&tables.edges, column + high);
         }
-        let low = [R::edge_dot_plane(codes[0], x, y), R::edge_dot_plane(codes[1], x1, y)];
-        let high = [R::edge_dot_plane(codes[2], x, y1), R::edge_dot_plane(codes[3], x1, y1)];
-        return plus_zero(bilinear(u, v, [low[0], low[1], high[0], high[1]]));
     }
-    let mut codes = columns;
-    for i in 0..4 {
-        codes[i] = edge_codes::<R>(tables, columns[i], cell[2], period[2]);
-    }
-    let z = offset[2];
-    let low = bilinear(u, v, layer(codes, [x, x1], [y, y1], z));
-    for code in &mut codes {
-        *code = code.shift_right(4);
-    }
-    let high = bilinear(u, v, layer(codes, [x, x1], [y, y1], z - one));
-    plus_zero(lerp(fade(z), low, high))
+    with_plus_zeros::<R, D, G>(blend_codes::<R, D, G>(codes, offset))
 }
 
-/// The gradients' parts at four corners in the order of [`columns`].
+/// The blend of the corners with these edge codes, in up to three dimensions. The signs of zeros are unspecified.
 #[inline(always)]
-fn layer<R: Real>(codes: [R::Int; 4], x: [R; 2], y: [R; 2], z: R) -> [R; 4] {
-    let low = [R::edge_dot(codes[0], x[0], y[0], z), R::edge_dot(codes[1], x[1], y[0], z)];
-    let high = [R::edge_dot(codes[2], x[0], y[1], z), R::edge_dot(codes[3], x[1], y[1], z)];
-    [low[0], low[1], high[0], high[1]]
+pub(crate) fn blend_codes<R: Real, const D: usize, const G: bool>(
+    codes: Corners<R::Int>,
+    offset: [R; D],
+) -> Dual<R, D> {
+    let zero = R::constant(0.0);
+    let (mut values, mut slopes) = ([zero; 16], [[zero; D]; 16]);
+    for i in 0..1 << D {
+        let from = from_corner(&offset, i);
+        if G {
+            let edge = R::edge(codes[i]);
+            values[i] = edge[0] * from[0];
+            for axis in 0..D {
+                slopes[i][axis] = edge[axis];
+                if axis > 0 {
+                    values[i] = values[i] + edge[axis] * from[axis];
+                }
+            }
+        } else {
+            values[i] = match D {
+                1 => R::edge_dot_plane(codes[i], from[0], zero),
+                2 => R::edge_dot_plane(codes[i], from[0], from[1]),
+                _ => R::edge_dot(codes[i], from[0], from[1], from[D - 1]),
+            };
+        }
+    }
+    blend::<R, D, G>(values, if G { Some(slopes) } else { None }, &Curve::quintic(&offset))
 }
 
-/// The edge codes at the lower end (bits 0–3) and the upper end (bits 4–7) of a column.
+/// The offset from a corner. (D entries, and one more to name.)
 #[inline(always)]
-fn edge_codes<R: Real>(tables: &Tables, column: R::Int, z: R, period: f64) -> R::Int {
-    if period == 0.0 {
-        return R::lookup(&tables.edges, column + z.to_int());
+fn from_corner<R: Real, const D: usize>(offset: &[R; D], corner: usize) -> [R; 4] {
+    let mut from = [R::constant(0.0); 4];
+    for axis in 0..D {
+        from[axis] = offset[axis];
+        if corner >> axis & 1 == 1 {
+            from[axis] = offset[axis] - R::constant(1.0);
+        }
     }
-    let (low, high) = corners(z, period);
-    let fifteen = R::Int::constant(15);
-    let low = R::lookup(&tables.edges, column + low) & fifteen;
-    let high = R::lookup(&tables.edges, column + high) & fifteen;
-    low | high.shift_left(4)
+    from
+}
+
+/// The blend of the sixteen corners in four dimensions, from their hashes.
+#[inline(always)]
+fn blend_four<R: Real, const D: usize, const G: bool>(hashes: Corners<R::Int>, offset: [R; D]) -> Dual<R, D> {
+    let (zero, one) = (R::constant(0.0), R::constant(1.0));
+    let (mut values, mut slopes) = ([zero; 16], [[zero; D]; 16]);
+    for i in 0..16 {
+        let [x, y, z, w] = from_corner(&offset, i);
+        // Which three axes: w, x, y for 1, z, w, x for 2, and else y, z, w.
+        let which = hashes[i] & R::Int::constant(24);
+        let (first, second) = (which.equals(R::Int::constant(8)), which.equals(R::Int::constant(16)));
+        let pick = |a, b, c| R::select(first, a, R::select(second, b, c));
+        let sign = |bit: i32| R::select((hashes[i] & R::Int::constant(bit)).equals(R::Int::constant(0)), -one, one);
+        let signs = [sign(4), sign(2), sign(1)];
+        values[i] = signs[0] * pick(w, z, y) + signs[1] * pick(x, w, z) + signs[2] * pick(y, x, w);
+        if G {
+            let [a, b, c] = signs;
+            let gradient = [pick(b, c, zero), pick(c, zero, a), pick(zero, a, b), pick(a, b, c)];
+            slopes[i][..D].copy_from_slice(&gradient[..D]);
+        }
+    }
+    blend::<R, D, G>(values, if G { Some(slopes) } else { None }, &Curve::quintic(&offset))
 }

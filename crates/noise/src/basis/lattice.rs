@@ -5,33 +5,30 @@
 //! sum then has the same mean for any number of octaves, an absolute sum folds at zero, and a material may exchange one
 //! noise for another without a shift of its colours.
 
-use super::{Period, Tables, bilinear, columns, cubic, ends, hash_byte, lerp, plus_zero, split};
-use crate::number::{Integer, Real};
+use super::corners::{Curve, blend, hash, plus_zero};
+use super::{Period, Tables, split};
+use crate::number::{Dual, Integer, Real};
 
-/// The noise at a point of two or three dimensions; the other coordinate is 0.
+/// The noise at a point; below three dimensions the other coordinates are 0.
 #[inline(always)]
-pub(crate) fn value<R: Real, const D: usize>(tables: &Tables, point: [R; D], period: &Period) -> R {
+pub(crate) fn evaluate<R: Real, const D: usize, const G: bool>(
+    tables: &Tables,
+    point: [R; D],
+    period: &Period,
+) -> Dual<R, D> {
     let (cell, offset) = split(point);
-    let (u, v) = (cubic(offset[0]), cubic(offset[1]));
-    let columns = columns(tables, cell[0], cell[1], period);
-    let (mut low, mut high) = ([u; 4], [u; 4]);
-    for i in 0..4 {
-        if D == 2 {
-            low[i] = number(hash_byte::<R>(&tables.permutation, columns[i]));
-        } else {
-            let (below, above) = ends::<R>(tables, columns[i], cell[2], period[2]);
-            (low[i], high[i]) = (number(below), number(above));
+    let hashes = hash(tables, &cell, period);
+    let mut values = [R::constant(0.0); 16];
+    for i in 0..1 << D {
+        values[i] = R::from_int(hashes[i] & R::Int::constant(255));
+    }
+    let mut sample = blend::<R, D, G>(values, None, &Curve::cubic(&offset));
+    let scale = R::constant(2.0 / 255.0);
+    sample.value = plus_zero(sample.value * scale - R::constant(1.0));
+    if G {
+        for part in &mut sample.gradient {
+            *part = plus_zero(*part * scale);
         }
     }
-    let mut value = bilinear(u, v, low);
-    if D == 3 {
-        value = lerp(cubic(offset[2]), value, bilinear(u, v, high));
-    }
-    plus_zero(value * R::constant(2.0 / 255.0) - R::constant(1.0))
-}
-
-/// The value of a hash_byte, from 0 to 255.
-#[inline(always)]
-fn number<R: Real>(hash: R::Int) -> R {
-    R::from_int(hash & R::Int::constant(255))
+    sample
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod cellular;
 pub(crate) mod classic;
+pub(crate) mod corners;
 mod hash;
 pub(crate) mod improved;
 pub(crate) mod lattice;
@@ -65,8 +66,12 @@ pub(crate) struct Tables {
     pub(crate) edges: ByteTable,
     /// Both, for reading all corners of a cell at once.
     pub(crate) corners: CornerTables,
-    /// The components of the unit gradients.
+    /// The components of the unit gradients of classic noise: on the sphere, and on that of four dimensions.
     gradients: [FloatTable; 3],
+    gradients_four: [FloatTable; 4],
+    /// Along an axis, how many cells are searched for feature points: 3. (Read from here, so that the compiler keeps the
+    /// loops: dozens of copies of their bodies would be no faster.)
+    around: usize,
     /// What the hash of cells starts from.
     hash_seed: i32,
 }
@@ -82,13 +87,15 @@ impl Tables {
             permutation,
             edges,
             gradients: seed::unit_vectors(seed).map(FloatTable::new),
+            gradients_four: seed::unit_vectors(seed).map(FloatTable::new),
+            around: 3,
             hash_seed: seed::Random::new(seed).bits() as i32,
         }
     }
 }
 
 /// The number of cells after which each axis repeats; 0 for the 256 of the table.
-pub(crate) type Period = [f64; 3];
+pub(crate) type Period = [f64; 4];
 
 /// A cell's coordinate within the period of its axis, if it has one.
 #[inline(always)]
@@ -103,46 +110,6 @@ fn wrap<R: Real>(cell: R, period: f64) -> R {
     R::select(rest.less(period), rest, rest - period)
 }
 
-/// The lattice coordinates below and above along one axis.
-#[inline(always)]
-fn corners<R: Real>(cell: R, period: f64) -> (R::Int, R::Int) {
-    (wrap(cell, period).to_int(), wrap(cell + R::constant(1.0), period).to_int())
-}
-
-/// The table's entry alone.
-#[inline(always)]
-fn hash_byte<R: Real>(table: &PairTable, index: R::Int) -> R::Int {
-    R::lookup_pair(table, index).0
-}
-
-/// The hashes of the four columns over the cell: (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
-#[inline(always)]
-fn columns<R: Real>(tables: &Tables, x: R, y: R, period: &Period) -> [R::Int; 4] {
-    let table = &tables.permutation;
-    if period[0] == 0.0 && period[1] == 0.0 {
-        let (x, y) = (x.to_int(), y.to_int());
-        let (left, right) = R::lookup_pair(table, x);
-        let (left_low, left_high) = R::lookup_pair(table, left + y);
-        let (right_low, right_high) = R::lookup_pair(table, right + y);
-        return [left_low, right_low, left_high, right_high];
-    }
-    let (x0, x1) = corners(x, period[0]);
-    let (y0, y1) = corners(y, period[1]);
-    let (left, right) = (hash_byte::<R>(table, x0), hash_byte::<R>(table, x1));
-    let low = [hash_byte::<R>(table, left + y0), hash_byte::<R>(table, right + y0)];
-    [low[0], low[1], hash_byte::<R>(table, left + y1), hash_byte::<R>(table, right + y1)]
-}
-
-/// The hashes at the lower and upper end of a column.
-#[inline(always)]
-fn ends<R: Real>(tables: &Tables, column: R::Int, z: R, period: f64) -> (R::Int, R::Int) {
-    if period == 0.0 {
-        return R::lookup_pair(&tables.permutation, column + z.to_int());
-    }
-    let (low, high) = corners(z, period);
-    (hash_byte::<R>(&tables.permutation, column + low), hash_byte::<R>(&tables.permutation, column + high))
-}
-
 /// Each coordinate's cell, and the offset in it. (Closures and the methods of arrays are not sure to be inlined, and code
 /// that is not inlined is not compiled with the machine's vector instructions; hence the loops here and elsewhere.)
 #[inline(always)]
@@ -155,26 +122,12 @@ fn split<R: Real, const D: usize>(point: [R; D]) -> ([R; D], [R; D]) {
     (cell, offset)
 }
 
-/// From `a` (at t = 0) to `b` (at t = 1).
+/// The value, or NaN where a coordinate is none.
 #[inline(always)]
-fn lerp<R: Real>(t: R, a: R, b: R) -> R {
-    a + t * (b - a)
-}
-
-/// Four corners in the order of [`columns`], blended.
-#[inline(always)]
-fn bilinear<R: Real>(u: R, v: R, corners: [R; 4]) -> R {
-    lerp(v, lerp(u, corners[0], corners[1]), lerp(u, corners[2], corners[3]))
-}
-
-/// The curve 3t² − 2t³, whose slope vanishes at both ends. \[Perlin 1985\]
-#[inline(always)]
-fn cubic<R: Real>(t: R) -> R {
-    t * t * (R::constant(3.0) - R::constant(2.0) * t)
-}
-
-/// The same value; a zero becomes `+0`. The number types may disagree on the sign of a zero until here.
-#[inline(always)]
-fn plus_zero<R: Real>(value: R) -> R {
-    value + R::constant(0.0)
+fn nan_where_none<R: Real, const D: usize>(value: R, offset: &[R; D]) -> R {
+    let mut value = value;
+    for &part in offset {
+        value = value + part * R::constant(0.0);
+    }
+    value
 }

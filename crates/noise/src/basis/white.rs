@@ -1,19 +1,18 @@
 //! White noise: one random number per cell, the same all over it.
 
-use super::{Period, Tables, hash, plus_zero};
-use crate::number::{Integer, Real};
+use super::corners::plus_zero;
+use super::{Period, Tables, hash, split};
+use crate::number::{Dual, Integer, Real};
 
-/// The noise at a point of two or three dimensions; the other coordinate is 0.
+/// The noise at a point; a missing coordinate is 0. Its gradient is zero.
 #[inline(always)]
-pub(crate) fn value<R: Real, const D: usize>(tables: &Tables, point: [R; D], period: &Period) -> R {
-    let (cell, offset) = super::split(point);
-    let x = hash::coordinate(&cell, 0, 0.0, period);
-    let y = hash::coordinate(&cell, 1, 0.0, period);
-    let z = if D == 3 { hash::coordinate(&cell, D - 1, 0.0, period) } else { R::Int::constant(0) };
-    let mut value = hash::signed::<R>(hash::bits::<R>(tables.hash_seed, x, y, z));
-    // Nothing, or NaN where a coordinate is none.
-    for part in offset {
-        value = value + part * R::constant(0.0);
+pub(crate) fn evaluate<R: Real, const D: usize>(tables: &Tables, point: [R; D], period: &Period) -> Dual<R, D> {
+    let (cell, offset) = split(point);
+    let mut mixed = R::Int::constant(tables.hash_seed);
+    for axis in 0..D {
+        mixed = mixed ^ hash::coordinate(&cell, axis, 0.0, period);
     }
-    plus_zero(value)
+    let value = hash::signed::<R>(hash::bits::<R>(mixed));
+    let value = super::nan_where_none(value, &offset);
+    Dual { value: plus_zero(value), gradient: [R::constant(0.0); D] }
 }

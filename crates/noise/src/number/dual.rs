@@ -92,6 +92,7 @@ impl<R: Real, const N: usize> Real for Dual<R, N> {
     type Int = R::Int;
     type Mask = R::Mask;
     const DOUBLE: bool = R::DOUBLE;
+    const SCALAR: bool = R::SCALAR;
 
     #[inline(always)]
     fn constant(value: f64) -> Self {
@@ -120,6 +121,10 @@ impl<R: Real, const N: usize> Real for Dual<R, N> {
     #[inline(always)]
     fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
         yes.with_both(no, R::select(mask, yes.value, no.value), |a, b| R::select(mask, a, b))
+    }
+    #[inline(always)]
+    fn select_int(mask: R::Mask, yes: R::Int, no: R::Int) -> R::Int {
+        R::select_int(mask, yes, no)
     }
     #[inline(always)]
     fn to_int(self) -> R::Int {

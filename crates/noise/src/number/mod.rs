@@ -49,6 +49,8 @@ pub trait Real:
     type Mask: Mask;
     /// Whether this is a number of double precision.
     const DOUBLE: bool;
+    /// Whether this is one number, not several.
+    const SCALAR: bool;
 
     /// The same value in every lane, rounded to the number's precision.
     fn constant(value: f64) -> Self;
@@ -62,6 +64,8 @@ pub trait Real:
     fn less(self, other: Self) -> Self::Mask;
     /// `yes` where the mask is set, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// `yes` where the mask is set, else `no`.
+    fn select_int(mask: Self::Mask, yes: Self::Int, no: Self::Int) -> Self::Int;
     /// A whole number as an integer. NaN and single-precision numbers outside the integer's range become the least
     /// integer, whose low eight bits are right (such numbers are multiples of 256). Double-precision numbers wrap.
     fn to_int(self) -> Self::Int;
@@ -93,13 +97,25 @@ pub trait Real:
     }
 
     /// The dot product of (x, y, z) with an edge direction of the cube, by the low four bits of `code`: bits 0–2 say x+y,
-    /// x−y, x+z, x−z, y+z, y−z, bit 3 negates. The sign of a zero is unspecified.
+    /// x−y, x+z, x−z, y+z, y−z and again x+y, x−z, bit 3 negates. The sign of a zero is unspecified.
     #[inline(always)]
     fn edge_dot(code: Self::Int, x: Self, y: Self, z: Self) -> Self {
-        let first = Self::select(clear::<Self>(code, 4), x, y);
-        let second = Self::select(clear::<Self>(code, 6), y, z);
-        let sum = first + Self::select(clear::<Self>(code, 1), second, -second);
-        Self::select(clear::<Self>(code, 8), sum, -sum)
+        let [x_part, y_part, z_part] = Self::edge(code);
+        x_part * x + (y_part * y + z_part * z)
+    }
+
+    /// The components of that direction.
+    #[inline(always)]
+    fn edge(code: Self::Int) -> [Self; 3] {
+        let (zero, one) = (Self::constant(0.0), Self::constant(1.0));
+        let sign = Self::select(clear::<Self>(code, 8), one, -one);
+        let second = Self::select(clear::<Self>(code, 1), sign, -sign);
+        // Codes 6 and 7 are those of the first pair and of the second.
+        let repeats = !(clear::<Self>(code, 4) | clear::<Self>(code, 2));
+        let with_x = clear::<Self>(code, 4) | repeats;
+        let with_z = !clear::<Self>(code, 6) & (!repeats | !clear::<Self>(code, 1));
+        let y = Self::select(with_x, Self::select(with_z, zero, second), sign);
+        [Self::select(with_x, sign, zero), y, Self::select(with_z, second, zero)]
     }
 
     /// [`Real::edge_dot`] for z = 0.

@@ -57,16 +57,16 @@ const EDGES: [[f32; 3]; 16] = [
     [1.0, 0.0, -1.0],
     [0.0, 1.0, 1.0],
     [0.0, 1.0, -1.0],
-    [0.0, 0.0, 0.0],
-    [0.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [1.0, 0.0, -1.0],
     [-1.0, -1.0, 0.0],
     [-1.0, 1.0, 0.0],
     [-1.0, 0.0, -1.0],
     [-1.0, 0.0, 1.0],
     [0.0, -1.0, -1.0],
     [0.0, -1.0, 1.0],
-    [0.0, 0.0, 0.0],
-    [0.0, 0.0, 0.0],
+    [-1.0, -1.0, 0.0],
+    [-1.0, 0.0, 1.0],
 ];
 
 macro_rules! scalar {
@@ -75,6 +75,7 @@ macro_rules! scalar {
             type Int = Wrapping;
             type Mask = bool;
             const DOUBLE: bool = $double;
+            const SCALAR: bool = true;
 
             #[inline(always)]
             fn constant(value: f64) -> Self {
@@ -98,6 +99,10 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn select(mask: bool, yes: Self, no: Self) -> Self {
+                if mask { yes } else { no }
+            }
+            #[inline(always)]
+            fn select_int(mask: bool, yes: Wrapping, no: Wrapping) -> Wrapping {
                 if mask { yes } else { no }
             }
             #[inline(always)]
@@ -138,6 +143,11 @@ macro_rules! scalar {
             fn edge_dot(code: Wrapping, x: Self, y: Self, z: Self) -> Self {
                 let [edge_x, edge_y, edge_z] = EDGES[(code.0 & 15) as usize];
                 $float::from(edge_x) * x + ($float::from(edge_y) * y + $float::from(edge_z) * z)
+            }
+            #[inline(always)]
+            fn edge(code: Wrapping) -> [Self; 3] {
+                let [x, y, z] = EDGES[(code.0 & 15) as usize];
+                [x.into(), y.into(), z.into()]
             }
         }
     };

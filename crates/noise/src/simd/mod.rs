@@ -109,9 +109,36 @@ pub fn map<K: Kernel<D>, const D: usize>(kernel: &K, inputs: [&[f32]; D], output
 /// # Panics
 /// When the slices differ in length.
 pub fn map_at<K: Kernel<D>, const D: usize>(level: Level, kernel: &K, inputs: [&[f32]; D], outputs: &mut [f32]) {
-    for input in inputs {
-        assert_eq!(input.len(), outputs.len(), "all slices have the same length");
+    map_outputs(level, &Alone(kernel), inputs, [outputs]);
+}
+
+/// An evaluation of `D` inputs to `N` values.
+pub(crate) trait Outputs<const D: usize, const N: usize> {
+    /// The values; as [`Kernel::run`].
+    fn run<R: Real>(&self, inputs: [R; D]) -> [R; N];
+}
+
+/// A kernel has one value.
+struct Alone<'a, K>(&'a K);
+
+impl<K: Kernel<D>, const D: usize> Outputs<D, 1> for Alone<'_, K> {
+    #[inline(always)]
+    fn run<R: Real>(&self, inputs: [R; D]) -> [R; 1] {
+        [self.0.run(inputs)]
     }
+}
+
+/// [`map_at`] for several values.
+#[inline(always)]
+pub(crate) fn map_outputs<K: Outputs<D, N>, const D: usize, const N: usize>(
+    level: Level,
+    kernel: &K,
+    inputs: [&[f32]; D],
+    outputs: [&mut [f32]; N],
+) {
+    let count = outputs[0].len();
+    assert!(inputs.iter().all(|input| input.len() == count), "all slices have the same length");
+    assert!(outputs.iter().all(|output| output.len() == count), "all slices have the same length");
     match level.min(machine_level()) {
         Level::Scalar => map_scalar(kernel, inputs, outputs),
         // SAFETY, for the three: the machine has the instructions, `machine_level` says.
@@ -127,108 +154,163 @@ pub fn map_at<K: Kernel<D>, const D: usize>(level: Level, kernel: &K, inputs: [&
 }
 
 /// A sum over octaves, for the kernels made by hand.
-pub(crate) struct Terms {
-    /// How many.
-    pub octaves: u32,
-    /// Whether each adds its absolute value.
+pub(crate) struct Terms<'a> {
+    /// Whether each octave adds its absolute value.
     pub absolute: bool,
-    /// The ratio between the frequencies of neighbouring octaves.
-    pub lacunarity: f64,
-    /// The ratio between the amplitudes of neighbouring octaves.
-    pub gain: f64,
-    /// What the amplitude of the last octave is multiplied by.
-    pub last: f64,
+    /// What the point is multiplied by, octave by octave.
+    pub frequencies: &'a [f32],
+    /// What the noise is multiplied by.
+    pub amplitudes: &'a [f32],
+    /// The products of both, by which the gradient is multiplied.
+    pub slopes: &'a [f32],
+    /// The frequencies and amplitudes once more, eight octaves at a time.
+    pub lanes: &'a [Lanes],
 }
 
-impl Terms {
-    /// The noise alone.
-    pub const ONE: Terms = Terms { octaves: 1, absolute: false, lacunarity: 1.0, gain: 1.0, last: 1.0 };
+/// Eight octaves, or fewer with zeros after them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Lanes {
+    pub frequencies: [f32; 8],
+    pub amplitudes: [f32; 8],
+}
 
-    /// The amplitude of an octave. (The powers of ½ are exact.)
+impl Terms<'_> {
+    /// The noise alone.
+    pub const ONE: Terms<'static> =
+        Terms { absolute: false, frequencies: &[1.0], amplitudes: &[1.0], slopes: &[1.0], lanes: &[] };
+
+    /// How many octaves.
     #[inline(always)]
-    pub fn amplitude(&self, octave: u32) -> f64 {
-        let mut amplitude = 1.0;
-        for _ in 0..octave {
-            amplitude *= self.gain;
-        }
-        if octave + 1 == self.octaves { amplitude * self.last } else { amplitude }
+    pub fn octaves(&self) -> usize {
+        self.amplitudes.len()
     }
 }
 
-/// The sum of improved noise without a period at the first points, by a kernel made by hand; returns how many points it
-/// did, perhaps none. Same bits as the generic evaluation.
-pub(crate) fn sum_improved<const D: usize>(
+/// The sum of improved noise without a period at the first points in space (and its gradient, where there are four
+/// outputs), by a kernel made by hand; returns how many points it did, perhaps none. Same bits as the generic evaluation.
+pub(crate) fn sum_improved<const N: usize>(
     level: Level,
     tables: &Tables,
     terms: &Terms,
-    points: [&[f32]; D],
-    values: &mut [f32],
+    points: [&[f32]; 3],
+    outputs: [&mut [f32]; N],
 ) -> usize {
-    for coordinates in points {
-        assert_eq!(coordinates.len(), values.len(), "all slices have the same length");
-    }
-    if D != 3 {
-        return 0;
-    }
-    let points = [points[0], points[1], points[D - 1]];
+    let count = outputs[0].len();
+    assert!(points.iter().all(|input| input.len() == count), "all slices have the same length");
+    assert!(outputs.iter().all(|output| output.len() == count), "all slices have the same length");
     match level.min(machine_level()) {
-        _ if values.len() <= FEW => 0,
         // SAFETY, for both: the machine has the instructions, `machine_level` says.
         #[cfg(target_arch = "x86_64")]
-        Level::Avx2 => unsafe { avx2::improved::sum(tables, terms, points, values) },
+        Level::Avx2 => unsafe { avx2::improved::sum(tables, terms, points, outputs) },
         #[cfg(target_arch = "x86_64")]
-        Level::Avx512 => unsafe { avx512::improved::sum(tables, terms, points, values) },
+        Level::Avx512 => unsafe { avx512::improved::sum(tables, terms, points, outputs) },
         _ => 0,
     }
 }
 
-/// The sum of improved noise at one point, if there is a kernel made by hand. Same bits as the generic evaluation.
-pub(crate) fn sum_improved_at(level: Level, tables: &Tables, terms: &Terms, [x, y, z]: [f32; 3]) -> Option<f32> {
+/// The sum of improved noise at one point, with its octaves in the lanes. Same bits as the generic evaluation.
+///
+/// # Panics
+/// Where the machine has no AVX2.
+pub(crate) fn sum_improved_at(level: Level, tables: &Tables, terms: &Terms, [x, y, z]: [f32; 3]) -> f32 {
     match level.min(machine_level()) {
         // SAFETY: the machine has the instructions, `machine_level` says.
         #[cfg(target_arch = "x86_64")]
-        Level::Avx2 | Level::Avx512 => Some(unsafe { avx2::single::sum(tables, terms, x, y, z) }),
-        _ => None,
+        Level::Avx2 => unsafe { avx2::single::sum(tables, terms, x, y, z) },
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => unsafe { avx512::single::sum(tables, terms, x, y, z) },
+        _ => unreachable!("without AVX2 there is no kernel"),
     }
 }
 
-/// Improved noise at one point, if there is a kernel made by hand. Same bits as the generic evaluation.
+/// Improved noise at one point, with its corners in the lanes, if the level in use has the instructions. Same bits as the
+/// generic evaluation.
 #[inline(always)]
-pub(crate) fn improved_at(level: Level, tables: &Tables, [x, y, z]: [f32; 3]) -> Option<f32> {
-    match level.min(machine_level()) {
-        // SAFETY: the machine has the instructions, `machine_level` says.
+pub(crate) fn improved_at(tables: &Tables, [x, y, z]: [f32; 3]) -> Option<f32> {
+    match level() {
+        // SAFETY: the machine has the instructions, `level` says.
         #[cfg(target_arch = "x86_64")]
         Level::Avx2 | Level::Avx512 => Some(unsafe { avx2::single::improved(tables, x, y, z) }),
         _ => None,
     }
 }
 
+/// Work on slices that the compiler makes vectors of.
+pub(crate) trait Task {
+    /// Does it. Mark it `#[inline(always)]`, as a kernel.
+    fn run(self);
+}
+
+/// Does the work with the instructions of a level, at most those of the machine.
+pub(crate) fn run<T: Task>(level: Level, task: T) {
+    match level.min(machine_level()) {
+        Level::Scalar | Level::Sse => task.run(),
+        // SAFETY, for both: the machine has the instructions, `machine_level` says.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 => unsafe { run_avx2(task) },
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => unsafe { run_avx512(task) },
+        #[cfg(not(target_arch = "x86_64"))]
+        _ => task.run(),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn run_avx2<T: Task>(task: T) {
+    task.run();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl")]
+fn run_avx512<T: Task>(task: T) {
+    task.run();
+}
+
 /// So few points are evaluated one by one, with their corners or octaves in the lanes, rather than in a vector that they
 /// would not fill.
 pub(crate) const FEW: usize = 3;
 
-fn map_scalar<K: Kernel<D>, const D: usize>(kernel: &K, inputs: [&[f32]; D], outputs: &mut [f32]) {
-    for (i, output) in outputs.iter_mut().enumerate() {
-        *output = kernel.run(inputs.map(|input| input[i]));
+fn map_scalar<K: Outputs<D, N>, const D: usize, const N: usize>(
+    kernel: &K,
+    inputs: [&[f32]; D],
+    mut outputs: [&mut [f32]; N],
+) {
+    for i in 0..outputs[0].len() {
+        for (output, value) in outputs.iter_mut().zip(kernel.run(inputs.map(|input| input[i]))) {
+            output[i] = value;
+        }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "sse4.1")]
-fn map_sse<K: Kernel<D>, const D: usize>(kernel: &K, inputs: [&[f32]; D], outputs: &mut [f32]) {
-    map_vectors::<sse::F32x4, K, D, 4>(kernel, inputs, outputs);
+fn map_sse<K: Outputs<D, N>, const D: usize, const N: usize>(
+    kernel: &K,
+    inputs: [&[f32]; D],
+    outputs: [&mut [f32]; N],
+) {
+    map_vectors::<sse::F32x4, K, D, N, 4>(kernel, inputs, outputs);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn map_avx2<K: Kernel<D>, const D: usize>(kernel: &K, inputs: [&[f32]; D], outputs: &mut [f32]) {
-    map_vectors::<avx2::F32x8, K, D, 8>(kernel, inputs, outputs);
+fn map_avx2<K: Outputs<D, N>, const D: usize, const N: usize>(
+    kernel: &K,
+    inputs: [&[f32]; D],
+    outputs: [&mut [f32]; N],
+) {
+    map_vectors::<avx2::F32x8, K, D, N, 8>(kernel, inputs, outputs);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
-fn map_avx512<K: Kernel<D>, const D: usize>(kernel: &K, inputs: [&[f32]; D], outputs: &mut [f32]) {
-    map_vectors::<avx512::F32x16, K, D, 16>(kernel, inputs, outputs);
+fn map_avx512<K: Outputs<D, N>, const D: usize, const N: usize>(
+    kernel: &K,
+    inputs: [&[f32]; D],
+    outputs: [&mut [f32]; N],
+) {
+    map_vectors::<avx512::F32x16, K, D, N, 16>(kernel, inputs, outputs);
 }
 
 /// A number made of `LANES` lanes.
@@ -239,29 +321,34 @@ trait Vector<const LANES: usize>: Real {
 
 /// Whole vectors first, then the rest in a vector filled up with zeros.
 #[inline(always)]
-fn map_vectors<V: Vector<LANES>, K: Kernel<D>, const D: usize, const LANES: usize>(
+fn map_vectors<V: Vector<LANES>, K: Outputs<D, N>, const D: usize, const N: usize, const LANES: usize>(
     kernel: &K,
     inputs: [&[f32]; D],
-    outputs: &mut [f32],
+    mut outputs: [&mut [f32]; N],
 ) {
-    let (whole, rest) = outputs.as_chunks_mut::<LANES>();
-    let chunks = inputs.map(|input| input.as_chunks::<LANES>());
-    for (i, output) in whole.iter_mut().enumerate() {
-        let mut vectors = [V::constant(0.0); D];
-        for (vector, (lanes, _)) in vectors.iter_mut().zip(&chunks) {
-            *vector = V::load(&lanes[i]);
+    let count = outputs[0].len();
+    let mut vectors = [V::constant(0.0); D];
+    for start in (0..count / LANES * LANES).step_by(LANES) {
+        for (vector, input) in vectors.iter_mut().zip(inputs) {
+            *vector = V::load(input[start..].first_chunk().expect("whole vectors"));
         }
-        kernel.run(vectors).store(output);
+        let values = kernel.run(vectors);
+        for (output, value) in outputs.iter_mut().zip(values) {
+            value.store(output[start..].first_chunk_mut().expect("whole vectors"));
+        }
     }
-    if !rest.is_empty() {
+    let rest = count % LANES;
+    if rest != 0 {
         let mut lanes = [0.0; LANES];
-        let mut vectors = [V::constant(0.0); D];
-        for (vector, (_, tail)) in vectors.iter_mut().zip(&chunks) {
-            lanes[..tail.len()].copy_from_slice(tail);
+        for (vector, input) in vectors.iter_mut().zip(inputs) {
+            lanes[..rest].copy_from_slice(&input[count - rest..]);
             *vector = V::load(&lanes);
         }
-        kernel.run(vectors).store(&mut lanes);
-        rest.copy_from_slice(&lanes[..rest.len()]);
+        let values = kernel.run(vectors);
+        for (output, value) in outputs.iter_mut().zip(values) {
+            value.store(&mut lanes);
+            output[count - rest..].copy_from_slice(&lanes[..rest]);
+        }
     }
 }
 

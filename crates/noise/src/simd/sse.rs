@@ -86,6 +86,7 @@ impl Real for F32x4 {
     type Int = I32x4;
     type Mask = M32x4;
     const DOUBLE: bool = false;
+    const SCALAR: bool = false;
 
     #[inline(always)]
     fn constant(value: f64) -> Self {
@@ -110,6 +111,18 @@ impl Real for F32x4 {
     #[inline(always)]
     fn select(mask: M32x4, yes: Self, no: Self) -> Self {
         F32x4(unsafe { _mm_blendv_ps(no.0, yes.0, mask.0) })
+    }
+    #[inline(always)]
+    fn select_int(mask: M32x4, yes: I32x4, no: I32x4) -> I32x4 {
+        I32x4(unsafe { _mm_blendv_epi8(no.0, yes.0, _mm_castps_si128(mask.0)) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        F32x4(unsafe { _mm_min_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        F32x4(unsafe { _mm_max_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn to_int(self) -> I32x4 {

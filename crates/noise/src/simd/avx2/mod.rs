@@ -15,10 +15,10 @@ use crate::table::{ByteTable, FloatTable, PairTable};
 
 /// Eight numbers.
 #[derive(Clone, Copy)]
-pub(super) struct F32x8(__m256);
+pub(in crate::simd) struct F32x8(__m256);
 /// Eight integers.
 #[derive(Clone, Copy)]
-pub(super) struct I32x8(__m256i);
+pub(in crate::simd) struct I32x8(__m256i);
 /// All bits of a lane, or none.
 #[derive(Clone, Copy)]
 pub(super) struct M32x8(__m256);
@@ -47,6 +47,18 @@ impl Neg for F32x8 {
 impl Mask for M32x8 {}
 
 impl I32x8 {
+    /// From the machine's register.
+    #[inline(always)]
+    pub fn from_bits(bits: __m256i) -> Self {
+        I32x8(bits)
+    }
+
+    /// The machine's register.
+    #[inline(always)]
+    pub fn bits(self) -> __m256i {
+        self.0
+    }
+
     /// The table's words at the low eight bits of each lane.
     #[inline(always)]
     fn gather(self, words: &[i32; 256]) -> Self {
@@ -79,6 +91,7 @@ impl Real for F32x8 {
     type Int = I32x8;
     type Mask = M32x8;
     const DOUBLE: bool = false;
+    const SCALAR: bool = false;
 
     #[inline(always)]
     fn constant(value: f64) -> Self {
@@ -103,6 +116,18 @@ impl Real for F32x8 {
     #[inline(always)]
     fn select(mask: M32x8, yes: Self, no: Self) -> Self {
         F32x8(unsafe { _mm256_blendv_ps(no.0, yes.0, mask.0) })
+    }
+    #[inline(always)]
+    fn select_int(mask: M32x8, yes: I32x8, no: I32x8) -> I32x8 {
+        I32x8(unsafe { _mm256_blendv_epi8(no.0, yes.0, _mm256_castps_si256(mask.0)) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        F32x8(unsafe { _mm256_min_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        F32x8(unsafe { _mm256_max_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn to_int(self) -> I32x8 {
@@ -152,6 +177,12 @@ impl Real for F32x8 {
         }
     }
     #[inline(always)]
+    fn edge(code: I32x8) -> [Self; 3] {
+        let [x, y, z] = unsafe { lines() };
+        let line = |line| F32x8(unsafe { _mm256_permutevar8x32_ps(line, code.0) }).negated_by(code);
+        [line(x), line(y), line(z)]
+    }
+    #[inline(always)]
     fn edge_dot_plane(code: I32x8, x: Self, y: Self) -> Self {
         unsafe {
             let [line_x, line_y, _] = lines();
@@ -166,13 +197,19 @@ impl Real for F32x8 {
 #[target_feature(enable = "avx2")]
 fn lines() -> [__m256; 3] {
     [
-        _mm256_setr_ps(1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0),
-        _mm256_setr_ps(1.0, -1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0),
-        _mm256_setr_ps(0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0),
+        _mm256_setr_ps(1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0),
+        _mm256_setr_ps(1.0, -1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0),
+        _mm256_setr_ps(0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 0.0, -1.0),
     ]
 }
 
 impl F32x8 {
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn splat(value: f32) -> Self {
+        F32x8(unsafe { _mm256_set1_ps(value) })
+    }
+
     /// Negated where bit 3 of `code` is set.
     #[inline(always)]
     fn negated_by(self, code: I32x8) -> Self {

@@ -2,9 +2,11 @@
 
 use std::arch::x86_64::*;
 
-use super::lines;
+use super::{F32x8, I32x8, lines};
 use crate::basis::Tables;
-use crate::simd::Terms;
+use crate::basis::improved::blend_codes;
+use crate::number::Real;
+use crate::simd::{Terms, Vector};
 
 /// The noise at a point. Same bits as the generic evaluation. (The coordinates come one by one, in registers: reading them
 /// as a vector, just after they were written one by one, would stall.)
@@ -13,17 +15,55 @@ pub(in crate::simd) fn improved(tables: &Tables, x: f32, y: f32, z: f32) -> f32 
     noise(tables, x, y, z)
 }
 
-/// The sum at a point.
+/// The sum at a point, with its octaves in the lanes.
 #[target_feature(enable = "avx2,fma")]
 pub(in crate::simd) fn sum(tables: &Tables, terms: &Terms, x: f32, y: f32, z: f32) -> f32 {
-    let (mut frequency, mut sum) = (1.0, 0.0);
-    for octave in 0..terms.octaves {
-        let scale = frequency as f32;
-        let noise = noise(tables, x * scale, y * scale, z * scale);
-        sum += terms.amplitude(octave) as f32 * if terms.absolute { noise.abs() } else { noise };
-        frequency *= terms.lacunarity;
+    let mut sum = 0.0;
+    let mut rest = terms.octaves();
+    for lanes in terms.lanes {
+        if rest == 1 {
+            let frequency = lanes.frequencies[0];
+            let noise = noise(tables, x * frequency, y * frequency, z * frequency);
+            return sum + lanes.amplitudes[0] * if terms.absolute { noise.abs() } else { noise };
+        }
+        let count = rest.min(8);
+        let noises = octaves(tables, F32x8::load(&lanes.frequencies), count, [x, y, z]);
+        let noises = if terms.absolute { noises.abs() } else { noises };
+        let mut parts = [0.0; 8];
+        (noises * F32x8::load(&lanes.amplitudes)).store(&mut parts);
+        for part in &parts[..count] {
+            sum += part;
+        }
+        rest -= count;
     }
     sum
+}
+
+/// The noise at the point times each frequency, of which `count` are in use.
+#[inline]
+#[target_feature(enable = "avx2,fma")]
+fn octaves(tables: &Tables, frequencies: F32x8, count: usize, point: [f32; 3]) -> F32x8 {
+    let mut offset = [frequencies; 3];
+    let mut cells = [[0u32; 8]; 3];
+    for axis in 0..3 {
+        let position = F32x8(_mm256_set1_ps(point[axis])) * frequencies;
+        let floor = position.floor();
+        offset[axis] = position - floor;
+        // SAFETY: there is room for eight.
+        unsafe { _mm256_storeu_si256(cells[axis].as_mut_ptr().cast(), floor.to_int().0) };
+    }
+    let hash = |lane: usize| {
+        if lane < count {
+            tables.corners.hash([cells[0][lane] as u8, cells[1][lane] as u8, cells[2][lane] as u8]) as i32
+        } else {
+            0
+        }
+    };
+    // (In registers: reading them as a vector, just after they were written one by one, would stall.)
+    let low = _mm_setr_epi32(hash(0), hash(1), hash(2), hash(3));
+    let high = if count > 4 { _mm_setr_epi32(hash(4), hash(5), hash(6), hash(7)) } else { _mm_setzero_si128() };
+    let codes = I32x8(_mm256_set_m128i(high, low));
+    blend_codes::<F32x8, 3, false>(super::improved::corners(codes), offset).value + F32x8::constant(0.0)
 }
 
 #[inline]

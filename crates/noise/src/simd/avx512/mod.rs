@@ -1,6 +1,7 @@
 //! Sixteen lanes: AVX-512 with VBMI. Tables of bytes are read from four registers, 64 bytes at a time.
 
 pub(super) mod improved;
+pub(super) mod single;
 
 use std::arch::x86_64::*;
 use std::ops::{Neg, Not};
@@ -84,6 +85,7 @@ impl Real for F32x16 {
     type Int = I32x16;
     type Mask = M32x16;
     const DOUBLE: bool = false;
+    const SCALAR: bool = false;
 
     #[inline(always)]
     fn constant(value: f64) -> Self {
@@ -108,6 +110,18 @@ impl Real for F32x16 {
     #[inline(always)]
     fn select(mask: M32x16, yes: Self, no: Self) -> Self {
         F32x16(unsafe { _mm512_mask_blend_ps(mask.0, no.0, yes.0) })
+    }
+    #[inline(always)]
+    fn select_int(mask: M32x16, yes: I32x16, no: I32x16) -> I32x16 {
+        I32x16(unsafe { _mm512_mask_blend_epi32(mask.0, no.0, yes.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        F32x16(unsafe { _mm512_min_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        F32x16(unsafe { _mm512_max_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn to_int(self) -> I32x16 {
@@ -156,6 +170,12 @@ impl Real for F32x16 {
         }
     }
     #[inline(always)]
+    fn edge(code: I32x16) -> [Self; 3] {
+        let part =
+            |table: &[f32; 16]| F32x16(unsafe { _mm512_permutexvar_ps(code.0, _mm512_loadu_ps(table.as_ptr())) });
+        [part(&EDGE_X), part(&EDGE_Y), part(&EDGE_Z)]
+    }
+    #[inline(always)]
     fn edge_dot_plane(code: I32x16, x: Self, y: Self) -> Self {
         unsafe {
             let product = _mm512_mul_ps(_mm512_permutexvar_ps(code.0, _mm512_loadu_ps(EDGE_Y.as_ptr())), y.0);
@@ -166,9 +186,9 @@ impl Real for F32x16 {
 }
 
 /// The components of the edge directions, by code: see [`Real::edge_dot`].
-const EDGE_X: [f32; 16] = [1., 1., 1., 1., 0., 0., 0., 0., -1., -1., -1., -1., 0., 0., 0., 0.];
-const EDGE_Y: [f32; 16] = [1., -1., 0., 0., 1., 1., 0., 0., -1., 1., 0., 0., -1., -1., 0., 0.];
-const EDGE_Z: [f32; 16] = [0., 0., 1., -1., 1., -1., 0., 0., 0., 0., -1., 1., -1., 1., 0., 0.];
+const EDGE_X: [f32; 16] = [1., 1., 1., 1., 0., 0., 1., 1., -1., -1., -1., -1., 0., 0., -1., -1.];
+const EDGE_Y: [f32; 16] = [1., -1., 0., 0., 1., 1., 1., 0., -1., 1., 0., 0., -1., -1., -1., 0.];
+const EDGE_Z: [f32; 16] = [0., 0., 1., -1., 1., -1., 0., -1., 0., 0., -1., 1., -1., 1., 0., 1.];
 
 impl Vector<16> for F32x16 {
     #[inline(always)]

@@ -1,0 +1,115 @@
+//! Sums over slices, octave by octave: some points at a time, whose noise the fastest kernel for it computes, and whose
+//! sums stay in the first cache.
+
+use super::Sum;
+use super::combine::{Combine, Partial};
+use crate::filter::Fade;
+use crate::noise::Octave;
+use crate::number::Dual;
+use crate::simd::{self, Level, Task};
+
+/// How many points at a time.
+const CHUNK: usize = 256;
+
+impl Sum {
+    /// The sums at many points, seen through their footprints if there are any, and, if there are slices for it, their
+    /// gradients.
+    pub(super) fn fill_by_octaves(
+        &self,
+        level: Level,
+        points: &[&[f32]],
+        footprints: Option<&[f32]>,
+        values: &mut [f32],
+        gradient: &mut [&mut [f32]],
+    ) {
+        assert!(points.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        assert!(gradient.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        match (points.len(), gradient.is_empty()) {
+            (1, true) => self.chunks::<1, false>(level, points, footprints, values, gradient),
+            (2, true) => self.chunks::<2, false>(level, points, footprints, values, gradient),
+            (3, true) => self.chunks::<3, false>(level, points, footprints, values, gradient),
+            (_, true) => self.chunks::<4, false>(level, points, footprints, values, gradient),
+            (1, false) => self.chunks::<1, true>(level, points, footprints, values, gradient),
+            (2, false) => self.chunks::<2, true>(level, points, footprints, values, gradient),
+            (3, false) => self.chunks::<3, true>(level, points, footprints, values, gradient),
+            (_, false) => self.chunks::<4, true>(level, points, footprints, values, gradient),
+        }
+    }
+
+    fn chunks<const D: usize, const G: bool>(
+        &self,
+        level: Level,
+        points: &[&[f32]],
+        footprints: Option<&[f32]>,
+        values: &mut [f32],
+        gradient: &mut [&mut [f32]],
+    ) {
+        let fade = Fade::of(self.noise.basis(), self.combine.folds(), D);
+        let mut buffers = Buffers::<D> { scaled: [[0.0; CHUNK]; D], noise: [0.0; CHUNK], slopes: [[0.0; CHUNK]; D] };
+        for start in (0..values.len()).step_by(CHUNK) {
+            let at = start..values.len().min(start + CHUNK);
+            let mut partials = [Partial::<f32, D>::new(); CHUNK];
+            for (&frequency, &amplitude) in self.scales.frequencies.iter().zip(&self.scales.amplitudes) {
+                for (scaled, axis) in buffers.scaled.iter_mut().zip(points) {
+                    for (scaled, coordinate) in scaled.iter_mut().zip(&axis[at.clone()]) {
+                        *scaled = coordinate * frequency as f32;
+                    }
+                }
+                let octave = Octave { noise: &self.noise, frequency };
+                let scaled = buffers.scaled.each_ref().map(|axis| &axis[..at.len()]);
+                let noise = &mut buffers.noise[..at.len()];
+                if G {
+                    let mut slopes = buffers.slopes.each_mut().map(|axis| &mut axis[..at.len()]);
+                    octave.fill(level, &scaled, noise, &mut slopes);
+                } else {
+                    octave.fill(level, &scaled, noise, &mut []);
+                }
+                let footprints = footprints.map(|footprints| &footprints[at.clone()]);
+                let (combine, buffers) = (self.combine, &buffers);
+                let partials = &mut partials[..at.len()];
+                simd::run(level, Add::<D, G> { combine, frequency, amplitude, fade, footprints, buffers, partials });
+            }
+            for (i, partial) in at.zip(&partials) {
+                values[i] = partial.sum.value;
+                for (axis, part) in gradient.iter_mut().zip(partial.sum.gradient) {
+                    axis[i] = part;
+                }
+            }
+        }
+    }
+}
+
+/// Points times the frequency, their noise and its gradient.
+struct Buffers<const D: usize> {
+    scaled: [[f32; CHUNK]; D],
+    noise: [f32; CHUNK],
+    slopes: [[f32; CHUNK]; D],
+}
+
+/// Adds an octave at the points of a chunk.
+struct Add<'a, const D: usize, const G: bool> {
+    combine: Combine,
+    frequency: f64,
+    amplitude: f64,
+    fade: Fade,
+    footprints: Option<&'a [f32]>,
+    buffers: &'a Buffers<D>,
+    partials: &'a mut [Partial<f32, D>],
+}
+
+impl<const D: usize, const G: bool> Task for Add<'_, D, G> {
+    #[inline(always)]
+    fn run(self) {
+        for (i, partial) in self.partials.iter_mut().enumerate() {
+            let mut noise = Dual { value: self.buffers.noise[i], gradient: [0.0; D] };
+            for axis in 0..if G { D } else { 0 } {
+                noise.gradient[axis] = self.buffers.slopes[axis][i];
+            }
+            let mut noise = self.combine.fold::<f32, D, G>(noise);
+            if let Some(footprints) = self.footprints {
+                noise.value = self.fade.apply(noise.value, footprints[i] * self.frequency as f32);
+            }
+            partial.add::<G>(self.combine, self.frequency, self.amplitude, noise);
+        }
+    }
+}
