@@ -57,9 +57,8 @@ pub(super) fn compile(
             let place = compiler.place(instance.transform.as_ref(), &instance.shaders, instance.span, &object.geometry);
             places.extend(place);
         }
-        match sources.mesh(&object.geometry, compiler.diagnostics) {
-            Some(mesh) => plan.mesh(mesh, &places),
-            None => add(&mut plan, object, &places, dialect, &mut plane_normals),
+        if !sources.add(&mut plan, &object.geometry, &places, compiler.diagnostics) {
+            add(&mut plan, object, &places, dialect, &mut plane_normals);
         }
     }
     Planned { geometry: plan.finish(), plane_normals }

@@ -2,7 +2,7 @@
 //!
 //! When something becomes supported, its arm here goes.
 
-use jaspe_scene::description::{Geometry, LightKind, Sampler, ShaderKind};
+use jaspe_scene::description::{LightKind, Sampler, ShaderKind};
 use jaspe_scene::{Diagnostic, Diagnostics, Scene, Span};
 
 /// Warns of everything that will be passed over.
@@ -27,9 +27,6 @@ pub(super) fn report(scene: &Scene, diagnostics: &mut Diagnostics) {
     }
     for modifier in &scene.modifiers {
         skipped(modifier.span, format!("modifier type `{}`", modifier.kind.keyword()));
-    }
-    for object in scene.objects.iter().filter(|object| !stands(&object.geometry)) {
-        skipped(object.span, format!("object type `{}`", object.geometry.keyword()));
     }
 }
 
@@ -56,25 +53,5 @@ fn shades(kind: &ShaderKind) -> bool {
         | ShaderKind::ViewIrradiance
         | ShaderKind::ViewGlobal
         | ShaderKind::Id => false,
-    }
-}
-
-fn stands(geometry: &Geometry) -> bool {
-    match geometry {
-        Geometry::Sphere { .. }
-        | Geometry::Plane(_)
-        | Geometry::Mesh(_)
-        | Geometry::Box { .. }
-        | Geometry::FileMesh { .. }
-        | Geometry::BezierMesh { .. }
-        | Geometry::Teapot(_)
-        | Geometry::Gumbo(_) => true,
-        Geometry::Torus { .. }
-        | Geometry::Cylinder
-        | Geometry::Banchoff
-        | Geometry::SphereFlake { .. }
-        | Geometry::Julia { .. }
-        | Geometry::Hair(_)
-        | Geometry::Particles { .. } => false,
     }
 }

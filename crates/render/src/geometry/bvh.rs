@@ -57,6 +57,7 @@ pub(crate) enum Kind {
     Triangles = 0,
     Spheres = 1,
     Instance = 2,
+    Analytic = 3,
 }
 
 /// A child of a node: another node, a leaf, or nothing.
@@ -94,7 +95,8 @@ impl Child {
         match self.0 >> 29 & 3 {
             0 => Kind::Triangles,
             1 => Kind::Spheres,
-            _ => Kind::Instance,
+            2 => Kind::Instance,
+            _ => Kind::Analytic,
         }
     }
 }

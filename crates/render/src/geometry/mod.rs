@@ -3,6 +3,7 @@
 //! Everything bounded lies in one tree ([`traverse::Tree`]); planes are infinite and tested one by one. What a ray
 //! meets is named by an [`Id`]; where and how it lies there is worked out in [`surface`].
 
+pub(crate) mod analytic;
 mod bvh;
 mod kernel;
 mod packet;
@@ -146,6 +147,17 @@ pub(crate) enum Shape {
     MeshInstance(u32),
     /// A unit sphere under a map that is no similarity.
     Ellipsoid,
+    /// Index into the sets of spheres; the set is in object space.
+    Spheres(u32),
+    /// Index into the shapes that are met by a formula; the shape is in object space.
+    Analytic(u32),
+}
+
+/// Spheres of one size, in their own space.
+#[derive(Debug, Clone)]
+pub(crate) struct SphereSet {
+    pub centers: Vec<Vec3>,
+    pub radius: f32,
 }
 
 /// One visible object.
@@ -164,6 +176,7 @@ pub(crate) struct Geometry {
     tree: traverse::Tree,
     pub planes: Vec<PlaneShape>,
     pub meshes: Vec<MeshShape>,
+    pub sphere_sets: Vec<SphereSet>,
     pub objects: Vec<Object>,
     /// See [`Geometry::only_materials`].
     only_material: Vec<u32>,
@@ -173,7 +186,11 @@ impl Geometry {
     /// Whether a ray that leaves a primitive of this object in a straight line cannot meet it again.
     #[inline]
     pub fn is_flat(&self, object: u32) -> bool {
-        !matches!(self.objects[object as usize].shape, Shape::Sphere { .. } | Shape::Ellipsoid)
+        match self.objects[object as usize].shape {
+            Shape::Plane(_) | Shape::Mesh(_) | Shape::MeshInstance(_) => true,
+            Shape::Sphere { .. } | Shape::Ellipsoid | Shape::Spheres(_) => false,
+            Shape::Analytic(index) => self.tree.analytic.shapes[index as usize].is_flat(),
+        }
     }
 
     /// The first hit of every ray.

@@ -223,7 +223,7 @@ impl<'a, S: Simd, const ANY: bool> Packet<'a, S, ANY> {
         match child.kind() {
             Kind::Triangles => self.triangles(&tree.triangles[child.index()], active, near),
             Kind::Spheres => self.spheres(&tree.spheres[child.index()], active, near),
-            Kind::Instance => self.alone(tree, child, active, near.store(), scratch),
+            Kind::Instance | Kind::Analytic => self.alone(tree, child, active, near.store(), scratch),
         }
     }
 

@@ -3,11 +3,15 @@
 //! A mesh that is seen once is baked into world space, so that its triangles share the top tree; one that is seen
 //! several times keeps a tree of its own, and every appearance is an instance of it.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use glam::{DMat4, DVec3, Vec3};
 
+use super::analytic::{Analytic, Leaf, Leaves};
 use super::bvh::{self, Aabb, Child, Item, Kind, Node};
 use super::traverse::{InstanceLeaf, SphereBlock, Tree, TriangleBlock};
-use super::{Geometry, Id, MeshShape, Object, PerVertex, PlaneShape, Shape};
+use super::{Geometry, Id, MeshShape, Object, PerVertex, PlaneShape, Shape, SphereSet};
 use crate::affine::{self, Affine};
 
 /// Where an object stands and what it is made of.
@@ -32,8 +36,20 @@ pub(crate) struct Plan {
     planes: Vec<PlaneShape>,
     meshes: Vec<MeshShape>,
     objects: Vec<Object>,
-    /// Objects that are instances of a mesh, with its index; `None` for the unit sphere.
-    instances: Vec<(u32, Option<u32>, DMat4)>,
+    sphere_sets: Vec<SphereSet>,
+    analytics: Vec<Arc<dyn Analytic>>,
+    /// Objects that are instances, and of what.
+    instances: Vec<(u32, Shared, DMat4)>,
+}
+
+/// What instances show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Shared {
+    UnitSphere,
+    /// Index into the meshes.
+    Mesh(u32),
+    /// Index into the sets of spheres.
+    Spheres(u32),
 }
 
 impl Plan {
@@ -56,7 +72,7 @@ impl Plan {
             }
             None => {
                 let object = self.object(Shape::Ellipsoid, place);
-                self.instances.push((object, None, place.world_from_object));
+                self.instances.push((object, Shared::UnitSphere, place.world_from_object));
             }
         }
     }
@@ -83,11 +99,30 @@ impl Plan {
             _ => {
                 for place in places {
                     let object = self.object(Shape::MeshInstance(index), place);
-                    self.instances.push((object, Some(index), place.world_from_object));
+                    self.instances.push((object, Shared::Mesh(index), place.world_from_object));
                 }
             }
         }
         self.meshes.push(mesh);
+    }
+
+    /// Spheres in object space and all their appearances.
+    pub fn spheres(&mut self, set: SphereSet, places: &[Placement]) {
+        let index = self.sphere_sets.len() as u32;
+        for place in places {
+            let object = self.object(Shape::Spheres(index), place);
+            self.instances.push((object, Shared::Spheres(index), place.world_from_object));
+        }
+        self.sphere_sets.push(set);
+    }
+
+    /// A shape that is met by a formula, and all its appearances.
+    pub fn analytic(&mut self, shape: Arc<dyn Analytic>, places: &[Placement]) {
+        let index = self.analytics.len() as u32;
+        places.iter().for_each(|place| {
+            self.object(Shape::Analytic(index), place);
+        });
+        self.analytics.push(shape);
     }
 
     /// Builds the tree.
@@ -104,13 +139,15 @@ impl Plan {
             _ => None,
         })));
         roots.extend(builder.instances_of(&self.instances, &shared, &self.objects));
+        roots.extend(builder.analytics_of(self.analytics, &self.objects));
         let root = builder.join(&roots);
-        let Builder { nodes, triangles, spheres, instances } = builder;
-        let tree = Tree { root, nodes, triangles, spheres, instances };
+        let Builder { nodes, triangles, spheres, instances, analytic } = builder;
+        let tree = Tree { root, nodes, triangles, spheres, instances, analytic };
         let mut geometry = Geometry {
             tree,
             planes: self.planes,
             meshes: self.meshes,
+            sphere_sets: self.sphere_sets,
             objects: self.objects,
             only_material: Vec::new(),
         };
@@ -119,17 +156,19 @@ impl Plan {
     }
 
     /// A tree for each shape that has instances, in the order of `instances`.
-    fn shared_trees(&self, builder: &mut Builder) -> Vec<SharedTree> {
-        let mut trees: Vec<SharedTree> = Vec::new();
+    fn shared_trees(&self, builder: &mut Builder) -> SharedTrees {
+        let none = Id::NONE.object;
+        let mut trees = SharedTrees::new();
         for &(_, shape, _) in &self.instances {
-            if trees.iter().any(|(known, _)| *known == shape) {
-                continue;
-            }
-            let tree = match shape {
-                Some(mesh) => builder.triangles_of(std::iter::once((&self.meshes[mesh as usize], Id::NONE.object))),
-                None => builder.spheres_of(std::iter::once((Vec3::ZERO, 1.0, Id::NONE.object))),
-            };
-            trees.push((shape, tree));
+            trees.entry(shape).or_insert_with(|| match shape {
+                Shared::Mesh(mesh) => builder.triangles_of(std::iter::once((&self.meshes[mesh as usize], none))),
+                Shared::UnitSphere => builder.spheres_of(std::iter::once((Vec3::ZERO, 1.0, none))),
+                Shared::Spheres(set) => {
+                    let SphereSet { centers, radius } = &self.sphere_sets[set as usize];
+                    let named = (0..).zip(centers);
+                    builder.named_spheres(named.map(|(index, &c)| (c, *radius, Id { object: none, index })))
+                }
+            });
         }
         trees
     }
@@ -156,8 +195,8 @@ fn bake(mesh: &mut MeshShape, place: &Placement) {
     }
 }
 
-/// What instances show, a mesh or the unit sphere, and the tree over it unless it is empty.
-type SharedTree = (Option<u32>, Option<(Child, Aabb)>);
+/// The trees over what instances show; none over what is empty.
+type SharedTrees = HashMap<Shared, Option<(Child, Aabb)>>;
 
 /// Trees in the making.
 #[derive(Default)]
@@ -166,6 +205,7 @@ struct Builder {
     triangles: Vec<TriangleBlock>,
     spheres: Vec<SphereBlock>,
     instances: Vec<InstanceLeaf>,
+    analytic: Leaves,
 }
 
 impl Builder {
@@ -207,6 +247,11 @@ impl Builder {
 
     /// A tree over spheres: centre, radius and the object that their hits name.
     fn spheres_of(&mut self, spheres: impl Iterator<Item = (Vec3, f32, u32)>) -> Option<(Child, Aabb)> {
+        self.named_spheres(spheres.map(|(center, radius, object)| (center, radius, Id { object, index: 0 })))
+    }
+
+    /// A tree over spheres: centre, radius and name.
+    fn named_spheres(&mut self, spheres: impl Iterator<Item = (Vec3, f32, Id)>) -> Option<(Child, Aabb)> {
         let spheres: Vec<_> = spheres.filter(|(center, radius, _)| center.is_finite() && radius.is_finite()).collect();
         let mut items: Vec<Item> = spheres
             .iter()
@@ -221,12 +266,12 @@ impl Builder {
         bvh::build(&mut items, 8, &mut self.nodes, &mut |items| {
             let mut block = SphereBlock::EMPTY;
             for (lane, item) in items.iter().enumerate() {
-                let (center, radius, object) = spheres[item.index as usize];
+                let (center, radius, id) = spheres[item.index as usize];
                 for axis in 0..3 {
                     block.centers[axis][lane] = center[axis];
                 }
                 block.radii[lane] = radius;
-                block.ids[lane] = Id { object, index: 0 };
+                block.ids[lane] = id;
             }
             blocks.push(block);
             Child::leaf(Kind::Spheres, blocks.len() - 1)
@@ -236,15 +281,14 @@ impl Builder {
     /// A tree over instances.
     fn instances_of(
         &mut self,
-        instances: &[(u32, Option<u32>, DMat4)],
-        shared: &[SharedTree],
+        instances: &[(u32, Shared, DMat4)],
+        shared: &SharedTrees,
         objects: &[Object],
     ) -> Option<(Child, Aabb)> {
         let mut items = Vec::new();
         let mut leaves = Vec::new();
         for &(object, shape, world_from_object) in instances {
-            let tree = shared.iter().find(|(known, _)| *known == shape).and_then(|(_, tree)| *tree);
-            let Some((root, bounds)) = tree else { continue };
+            let Some((root, bounds)) = shared.get(&shape).copied().flatten() else { continue };
             let corners = bounds.corners().map(|c| world_from_object.transform_point3(c.as_dvec3()).as_vec3());
             let bounds = Aabb::around(corners);
             if bounds.is_finite() {
@@ -257,6 +301,28 @@ impl Builder {
             Child::leaf(Kind::Instance, items[0].index as usize)
         });
         self.instances = leaves;
+        tree
+    }
+
+    /// A tree over the parts of the shapes that are met by a formula.
+    fn analytics_of(&mut self, shapes: Vec<Arc<dyn Analytic>>, objects: &[Object]) -> Option<(Child, Aabb)> {
+        let (mut items, mut leaves, mut placed) = (Vec::new(), Vec::new(), Vec::new());
+        for (number, object) in (0..).zip(objects) {
+            let Shape::Analytic(shape) = object.shape else { continue };
+            for part in 0..shapes[shape as usize].part_count() {
+                let corners = shapes[shape as usize].bounds(part).corners();
+                let bounds = Aabb::around(corners.map(|corner| object.world_from_object.point(corner)));
+                if bounds.is_finite() {
+                    items.push(Item { bounds, index: leaves.len() as u32 });
+                    leaves.push(Leaf { part: part as u32, object: placed.len() as u32 });
+                }
+            }
+            placed.push((number, shape, object.clone()));
+        }
+        let tree = bvh::build(&mut items, 1, &mut self.nodes, &mut |items| {
+            Child::leaf(Kind::Analytic, items[0].index as usize)
+        });
+        self.analytic = Leaves { shapes, objects: placed, leaves };
         tree
     }
 

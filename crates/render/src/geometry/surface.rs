@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::analytic;
 use super::simd::{self, Simd};
 use super::{Geometry, Hit, Hits, Id, MeshShape, Ray, Rays, Rows, Shape};
 use crate::math;
@@ -120,6 +121,16 @@ impl Geometry {
                 let normal = object.object_from_world.transposed(local).normalize_or(Vec3::Z);
                 Surface { point: object.world_from_object.point(local), geometric: normal, normal }
             }
+            Shape::Spheres(index) => {
+                let set = &self.sphere_sets[index as usize];
+                let center = set.centers[hit.id.index as usize];
+                let local = object.object_from_world.point(ray.origin + ray.direction * hit.t) - center;
+                let outward = local.normalize_or(Vec3::Z);
+                let normal = object.object_from_world.transposed(outward).normalize_or(Vec3::Z);
+                let point = object.world_from_object.point(center + outward * set.radius);
+                Surface { point, geometric: normal, normal }
+            }
+            Shape::Analytic(index) => analytic::surface(&*self.tree.analytic.shapes[index as usize], object, ray, hit),
         }
     }
 
@@ -127,11 +138,11 @@ impl Geometry {
     pub fn uv(&self, hit: &Hit, point: Vec3) -> Vec2 {
         let object = &self.objects[hit.id.object as usize];
         match object.shape {
-            Shape::Sphere { .. } | Shape::Ellipsoid => {
+            Shape::Sphere { .. } | Shape::Ellipsoid => sphere_uv(object.object_from_world.point(point)),
+            Shape::Spheres(_) => Vec2::ZERO,
+            Shape::Analytic(index) => {
                 let local = object.object_from_world.point(point);
-                let longitude = math::atan2(local.y, local.x) / std::f32::consts::TAU;
-                let u = if longitude < 0.0 { longitude + 1.0 } else { longitude };
-                Vec2::new(u, math::acos(local.z.clamp(-1.0, 1.0)) / std::f32::consts::PI)
+                self.tree.analytic.shapes[index as usize].uv(hit.id.index as usize, [hit.u, hit.v], local)
             }
             Shape::Plane(index) => {
                 let plane = &self.planes[index as usize];
@@ -178,6 +189,13 @@ impl Geometry {
             |(number, object)| if many(object) { MANY } else { self.material_of(Id { object: number, index: 0 }) };
         (0..).zip(&self.objects).map(only).collect()
     }
+}
+
+/// Texture coordinates of the unit sphere: longitude from the x axis, and angle from the z axis.
+pub(super) fn sphere_uv(p: Vec3) -> Vec2 {
+    let longitude = math::atan2(p.y, p.x) / std::f32::consts::TAU;
+    let u = if longitude < 0.0 { longitude + 1.0 } else { longitude };
+    Vec2::new(u, math::acos(p.z.clamp(-1.0, 1.0)) / std::f32::consts::PI)
 }
 
 /// In place of a material: different triangles have different ones.

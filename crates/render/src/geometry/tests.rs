@@ -97,14 +97,28 @@ fn brute_force(geometry: &Geometry, ray: &Ray) -> Hit {
     for (number, object) in geometry.objects.iter().enumerate() {
         let number = number as u32;
         let mut local = *ray;
-        if matches!(object.shape, Shape::Ellipsoid | Shape::MeshInstance(_)) {
+        if matches!(object.shape, Shape::Ellipsoid | Shape::MeshInstance(_) | Shape::Spheres(_)) {
             local.origin = object.object_from_world.point(ray.origin);
             local.direction = object.object_from_world.vector(ray.direction);
         }
         match object.shape {
             Shape::Plane(_) => {}
-            Shape::Sphere { center, radius } => brute_sphere(&local, center, radius, number, &mut best),
-            Shape::Ellipsoid => brute_sphere(&local, Vec3::ZERO, 1.0, number, &mut best),
+            Shape::Sphere { center, radius } => brute_sphere(&local, center, radius, (number, 0), &mut best),
+            Shape::Ellipsoid => brute_sphere(&local, Vec3::ZERO, 1.0, (number, 0), &mut best),
+            Shape::Spheres(set) => {
+                let set = &geometry.sphere_sets[set as usize];
+                for (index, &center) in (0..).zip(&set.centers) {
+                    brute_sphere(&local, center, set.radius, (number, index), &mut best);
+                }
+            }
+            Shape::Analytic(_) => {
+                let analytic = &geometry.tree.analytic;
+                for (leaf, part) in analytic.leaves.iter().enumerate() {
+                    if analytic.objects[part.object as usize].0 == number {
+                        analytic.meet(leaf, ray, 0.0, &mut best);
+                    }
+                }
+            }
             Shape::Mesh(mesh) | Shape::MeshInstance(mesh) => {
                 brute_mesh(&local, &geometry.meshes[mesh as usize], number, &mut best);
             }
@@ -121,12 +135,12 @@ fn lanes(ray: &Ray) -> Lanes<Portable> {
     }
 }
 
-fn brute_sphere(ray: &Ray, center: Vec3, radius: f32, object: u32, best: &mut Hit) {
+fn brute_sphere(ray: &Ray, center: Vec3, radius: f32, (object, index): (u32, u32), best: &mut Hit) {
     let [zero, t_max, radius] = [0.0, best.t, radius].map(Portable::splat);
     if let Some(crossing) = sphere(&lanes(ray), Vec3x8::splat(center), radius, zero, t_max)
         && crossing.mask != 0
     {
-        best.improve(Hit { t: crossing.t.store()[0], u: 0.0, v: 0.0, id: Id { object, index: 0 } });
+        best.improve(Hit { t: crossing.t.store()[0], u: 0.0, v: 0.0, id: Id { object, index } });
     }
 }
 
@@ -185,7 +199,8 @@ fn plan(fill: impl FnOnce(&mut Plan)) -> Geometry {
 /// Every primitive lies in exactly one leaf, and inside all boxes above it.
 fn validate(geometry: &Geometry) {
     let tree = &geometry.tree;
-    let mut seen = vec![[0u32; 3]; tree.triangles.len().max(tree.spheres.len()).max(tree.instances.len())];
+    let lengths = [tree.triangles.len(), tree.spheres.len(), tree.instances.len(), tree.analytic.leaves.len()];
+    let mut seen = vec![[0u32; 4]; lengths.into_iter().max().unwrap_or(0)];
     let roots = std::iter::once(tree.root).chain(distinct(tree.instances.iter().map(|leaf| leaf.root)));
     for root in roots.filter(|&root| root != Child::NONE) {
         let mut open = vec![(root, Vec::new())];
@@ -202,7 +217,6 @@ fn validate(geometry: &Geometry) {
             }
         }
     }
-    let lengths = [tree.triangles.len(), tree.spheres.len(), tree.instances.len()];
     for (kind, &length) in lengths.iter().enumerate() {
         assert!(seen[..length].iter().all(|counts| counts[kind] == 1), "every leaf has one place");
     }
@@ -238,7 +252,7 @@ fn contained(tree: &traverse::Tree, leaf: Child, boxes: &[(Vec3, Vec3)]) {
                 assert!(inside(center - block.radii[lane]) && inside(center + block.radii[lane]));
             }
         }
-        Kind::Instance => {}
+        Kind::Instance | Kind::Analytic => {}
     }
 }
 
@@ -261,6 +275,36 @@ fn triangles_spheres_planes_and_instances_are_met_as_by_brute_force() {
             plan.plane(Vec3::Z * 2.0, Vec3::Z, None, &here());
         });
         check("mixed", &geometry, &rays(&mut random, 2000, 1.0, Vec3::ZERO));
+    }
+}
+
+#[test]
+fn sets_of_spheres_and_shapes_with_a_formula_are_met_as_by_brute_force() {
+    use super::analytic::{Banchoff, Cylinder, Flake, Hair, Julia, Torus};
+    use std::sync::Arc;
+    for seed in 0..3 {
+        let mut random = Random(seed * 1000 + 5);
+        let geometry = plan(|plan| {
+            let at = |random: &mut Random, size: f64| {
+                let turned = DMat4::from_rotation_x(f64::from(random.next()) * 6.0);
+                let stretched = DMat4::from_scale(DVec3::new(size, size, size * 1.5));
+                place(DMat4::from_translation(random.point().as_dvec3()) * turned * stretched)
+            };
+            let centers: Vec<Vec3> = (0..200).map(|_| random.point()).collect();
+            let places = [here(), at(&mut random, 0.5)];
+            plan.spheres(SphereSet { centers, radius: 0.05 }, &places);
+            plan.analytic(Arc::new(Torus { tube: 0.25, ring: 1.0 }), &[at(&mut random, 0.4), at(&mut random, 0.6)]);
+            plan.analytic(Arc::new(Cylinder), &[at(&mut random, 0.3)]);
+            plan.analytic(Arc::new(Banchoff), &[at(&mut random, 0.4)]);
+            let flake = Flake { level: 2, axis: DVec3::Y, radius: 1.0 };
+            plan.analytic(Arc::new(flake), &[at(&mut random, 0.3)]);
+            let c = glam::DVec4::new(-0.4, 0.2, 0.3, -0.2);
+            plan.analytic(Arc::new(Julia { c, iterations: 10, epsilon: 1e-4 }), &[at(&mut random, 0.4)]);
+            let points = (0..40).map(|_| random.point()).collect();
+            plan.analytic(Arc::new(Hair { segments: 3, width: 0.05, points }), &[here()]);
+            plan.mesh(random_soup(&mut random, 50, 0.3), &[here()]);
+        });
+        check("analytic", &geometry, &rays(&mut random, 1000, 1.0, Vec3::ZERO));
     }
 }
 

@@ -3,6 +3,7 @@
 //! The hit that wins is the closest, and of equally close ones that of the smallest [`Id`]. It does not depend on the
 //! way through the tree: see [`kernel::triangle`] about the boxes of the leaves.
 
+use super::analytic;
 use super::bvh::{Child, Kind, MAX_DEPTH, Node};
 use super::kernel::{self, Crossing, Lanes};
 use super::packet;
@@ -56,6 +57,7 @@ pub(crate) struct Tree {
     pub triangles: Vec<TriangleBlock>,
     pub spheres: Vec<SphereBlock>,
     pub instances: Vec<InstanceLeaf>,
+    pub analytic: analytic::Leaves,
 }
 
 /// Most children that wait at a time: a node takes one from the stack and may add eight.
@@ -152,6 +154,7 @@ impl Tree {
                 Kind::Triangles => self.triangles[child.index()].intersect(&space.lanes, ray, enter, best),
                 Kind::Spheres => self.spheres[child.index()].intersect(&space.lanes, ray, enter, best),
                 Kind::Instance => instances.enter::<S>(&self.instances[child.index()], enter, best),
+                Kind::Analytic => self.analytic.meet(child.index(), ray, enter, best),
             }
             if ANY && best.id != known {
                 return;

@@ -1,4 +1,4 @@
-//! Shapes that few words describe, as triangles (format reference, §3.13).
+//! Shapes that few words describe: as triangles, as spheres, or by their formula (format reference, §3.13).
 
 mod bezier;
 mod gumbo;
@@ -7,11 +7,12 @@ mod teapot;
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::Vec3;
-use jaspe_scene::description::{Geometry, Name};
+use glam::{DVec3, Vec3};
+use jaspe_scene::description::{ByteOrder, Geometry, Name, PointSource};
 use jaspe_scene::{Diagnostic, Diagnostics, Loader, Scene};
 
-use crate::geometry::{MeshShape, PerVertex};
+use crate::geometry::analytic::{self, Analytic};
+use crate::geometry::{MeshShape, PerVertex, Placement, Plan, SphereSet};
 use crate::math;
 use crate::mesh_file;
 
@@ -22,8 +23,32 @@ pub(super) struct Sources<'a> {
 }
 
 impl Sources<'_> {
+    /// Adds a shape of this module with all its appearances. False for another, or one whose file cannot be used,
+    /// which is then reported.
+    pub fn add(
+        &self,
+        plan: &mut Plan,
+        geometry: &Geometry,
+        places: &[Placement],
+        diagnostics: &mut Diagnostics,
+    ) -> bool {
+        if let Some(shape) = analytic(geometry) {
+            plan.analytic(shape, places);
+        } else if let Geometry::Particles { points, count, radius } = geometry {
+            match self.particles(points, *count, *radius) {
+                Ok(set) => plan.spheres(set, places),
+                Err(diagnostic) => diagnostics.push(diagnostic),
+            }
+        } else if let Some(mesh) = self.mesh(geometry, diagnostics) {
+            plan.mesh(mesh, places);
+        } else {
+            return false;
+        }
+        true
+    }
+
     /// The triangles of a shape; `None` for one that has none, or whose file cannot be used, which is then reported.
-    pub fn mesh(&self, geometry: &Geometry, diagnostics: &mut Diagnostics) -> Option<MeshShape> {
+    fn mesh(&self, geometry: &Geometry, diagnostics: &mut Diagnostics) -> Option<MeshShape> {
         match geometry {
             Geometry::BezierMesh { net, tessellation } => {
                 Some(bezier::tessellate(bezier::patches_of_net(net), *tessellation))
@@ -52,6 +77,26 @@ impl Sources<'_> {
         }
     }
 
+    /// Spheres of one size around points of the scene or of a file.
+    fn particles(&self, points: &PointSource, count: Option<u32>, radius: f32) -> Result<SphereSet, Diagnostic> {
+        let most = count.map_or(usize::MAX, |count| count as usize);
+        let centers: Vec<Vec3> = match points {
+            PointSource::Points(points) => points.iter().take(most).map(|&point| point.into()).collect(),
+            PointSource::File { file, order } => {
+                let (_, bytes) = self.load(file)?;
+                let read = match order {
+                    ByteOrder::BigEndian => f32::from_be_bytes,
+                    ByteOrder::LittleEndian => f32::from_le_bytes,
+                };
+                let (numbers, _) = bytes.as_chunks::<4>();
+                let (points, _) = numbers.as_chunks::<3>();
+                points.iter().take(most).map(|point| Vec3::from(point.map(read))).collect()
+            }
+        };
+        // What is not finite is in no place; the tree leaves it out.
+        Ok(SphereSet { centers, radius })
+    }
+
     /// Looks for a file on the include path, then where the program runs.
     fn load(&self, name: &Name) -> Result<(String, Arc<[u8]>), Diagnostic> {
         let written = Path::new(name.value.strip_prefix("//").unwrap_or(&name.value));
@@ -66,6 +111,31 @@ impl Sources<'_> {
         let hint = "add the folder that holds it with the line `includepath FOLDER`";
         Err(Diagnostic::error(name.span, format!("the file `{}` was not found", name.value)).hint(hint))
     }
+}
+
+/// The shapes that are met by a formula.
+fn analytic(geometry: &Geometry) -> Option<Arc<dyn Analytic>> {
+    Some(match geometry {
+        Geometry::Torus { tube, ring } => Arc::new(analytic::Torus { tube: f64::from(*tube), ring: f64::from(*ring) }),
+        Geometry::Cylinder => Arc::new(analytic::Cylinder),
+        Geometry::Banchoff => Arc::new(analytic::Banchoff),
+        Geometry::SphereFlake { level, axis, radius } => Arc::new(analytic::Flake {
+            level: *level,
+            axis: Vec3::from(*axis).as_dvec3().normalize_or(DVec3::Z),
+            radius: f64::from(*radius),
+        }),
+        Geometry::Julia { c, iterations, epsilon } => Arc::new(analytic::Julia {
+            c: c.map(f64::from).into(),
+            iterations: *iterations,
+            epsilon: f64::from(*epsilon),
+        }),
+        Geometry::Hair(hair) => Arc::new(analytic::Hair {
+            segments: hair.segments as usize,
+            width: hair.width,
+            points: hair.points.iter().map(|&point| point.into()).collect(),
+        }),
+        _ => return None,
+    })
 }
 
 fn unusable(name: &Name, why: &str) -> Diagnostic {
