@@ -435,3 +435,41 @@ fn no_ray_leaves_a_closed_mesh_between_its_triangles() {
     }
     check("ball", &geometry, &rays);
 }
+
+/// A ray that leaves a surface as the shading sends it does not meet the same place again.
+#[test]
+fn rays_that_leave_a_shape_with_a_formula_get_away_from_it() {
+    use super::analytic::{Analytic, Banchoff, Cylinder, Flake, Julia, Torus};
+    use std::sync::Arc;
+    let c = glam::DVec4::new(-0.4, 0.2, 0.3, -0.2);
+    let shapes: [Arc<dyn Analytic>; 5] = [
+        Arc::new(Torus { tube: 0.25, ring: 1.0 }),
+        Arc::new(Cylinder),
+        Arc::new(Banchoff),
+        Arc::new(Flake { level: 3, axis: DVec3::Y, radius: 0.6 }),
+        Arc::new(Julia { c, iterations: 10, epsilon: 1e-5 }),
+    ];
+    for (shape, size) in shapes.iter().flat_map(|shape| [0.01, 1.0, 1000.0].map(|size| (shape, size))) {
+        let at = DMat4::from_translation(DVec3::new(1.0, 2.0, -1.0) * size) * DMat4::from_scale(DVec3::splat(size));
+        let geometry = plan(|plan| plan.analytic(shape.clone(), &[place(at)]));
+        let mut random = Random(3);
+        let (center, mut scratch) = (Vec3::new(1.0, 2.0, -1.0) * size as f32, Scratch::default());
+        let (mut met, mut stuck) = (0, 0);
+        for ray in rays(&mut random, 2000, size as f32, center) {
+            let mut hit = Hit { t: f32::INFINITY, ..Hit::NONE };
+            geometry.trace::<Portable, false>(&ray, &mut hit, &mut scratch);
+            if hit.id == Id::NONE {
+                continue;
+            }
+            let surface = geometry.surface(&ray, &hit);
+            let side = if ray.direction.dot(surface.geometric) < 0.0 { surface.geometric } else { -surface.geometric };
+            let origin = crate::math::offset(surface.point, side);
+            let away = Ray { origin, direction: side, t_min: 0.0, t_max: 1e-3 * size as f32, skip: Id::NONE };
+            let mut again = Hit { t: away.t_max, ..Hit::NONE };
+            geometry.trace::<Portable, true>(&away, &mut again, &mut scratch);
+            (met, stuck) = (met + 1, stuck + usize::from(again.id != Id::NONE));
+        }
+        // The folds of a Julia set come as near to each other as one likes.
+        assert!(met > 200 && stuck * 100 <= met, "{shape:?} of size {size}: {stuck} of {met}");
+    }
+}

@@ -119,7 +119,8 @@ const KEYS: &[Key<Draft>] = &[
         Ok(())
     }),
     Key::new("sides", "sides 6", |p, d, _| {
-        d.sides = u32::try_from(p.int()?.max(0)).unwrap_or(u32::MAX);
+        let sides = p.spanned(Parser::int)?;
+        d.sides = p.clamped("`sides`", sides, 0, 1000) as u32;
         Ok(())
     }),
     Key::new("rotation", "rotation 30", |p, d, _| {

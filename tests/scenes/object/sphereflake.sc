@@ -1,0 +1,7 @@
+% Spheres on spheres, three times over.
+include ../../stage/light.sc
+include ../../stage/camera.sc
+shader { name glossy type phong diff 0.4 0.3 0.2 spec 0.5 0.5 0.5 40 samples 0 }
+shader { name floor type diffuse diff 0.5 0.5 0.5 }
+object { shader floor type plane p 0 -1 0 n 0 1 0 }
+object { shader glossy transform { rotatex -90 scaleu 0.6 } type sphereflake level 3 }

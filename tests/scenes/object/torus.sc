@@ -1,0 +1,8 @@
+% A ring, seen through its hole, and one stretched.
+include ../../stage/light.sc
+include ../../stage/camera.sc
+shader { name glossy type phong diff 0.4 0.3 0.2 spec 0.5 0.5 0.5 40 samples 0 }
+shader { name floor type diffuse diff 0.5 0.5 0.5 }
+object { shader floor type plane p 0 -1 0 n 0 1 0 }
+object { shader glossy transform { rotatex 30 } type torus r 0.3 0.9 }
+object { shader glossy transform { scale 0.5 0.2 1.2 rotatex 90 translate 0 -0.1 -0.3 } type torus r 0.3 1 }
