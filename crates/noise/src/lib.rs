@@ -62,6 +62,7 @@
 mod basis;
 mod dispatch;
 mod filter;
+mod grid;
 pub mod math;
 mod noise;
 mod number;
@@ -73,6 +74,7 @@ mod table;
 
 pub use basis::Basis;
 pub use basis::cellular::{Cellular, Feature, Metric};
+pub use grid::Grid;
 pub use noise::{Noise, PeriodError};
 pub use number::{Dual, Integer, Mask, Real};
 pub use sum::{Combine, Sum};

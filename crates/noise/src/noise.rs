@@ -113,6 +113,16 @@ impl Noise {
         self.basis
     }
 
+    /// The cells after which each axis repeats, or 0.
+    pub(crate) fn period(&self) -> &Period {
+        &self.period
+    }
+
+    /// What follows from the seed.
+    pub(crate) fn tables(&self) -> &Tables {
+        &self.tables
+    }
+
     /// The seed.
     pub fn seed(&self) -> u64 {
         self.seed

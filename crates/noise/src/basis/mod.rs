@@ -3,7 +3,7 @@
 pub(crate) mod cellular;
 pub(crate) mod classic;
 pub(crate) mod corners;
-mod hash;
+pub(crate) mod hash;
 pub(crate) mod improved;
 pub(crate) mod lattice;
 pub(crate) mod simplex;
@@ -67,13 +67,13 @@ pub(crate) struct Tables {
     /// Both, for reading all corners of a cell at once.
     pub(crate) corners: CornerTables,
     /// The components of the unit gradients of classic noise: on the sphere, and on that of four dimensions.
-    gradients: [FloatTable; 3],
+    pub(crate) gradients: [FloatTable; 3],
     gradients_four: [FloatTable; 4],
     /// Along an axis, how many cells are searched for feature points: 3. (Read from here, so that the compiler keeps the
     /// loops: dozens of copies of their bodies would be no faster.)
     around: usize,
     /// What the hash of cells starts from.
-    hash_seed: i32,
+    pub(crate) hash_seed: i32,
 }
 
 impl Tables {
@@ -99,7 +99,7 @@ pub(crate) type Period = [f64; 4];
 
 /// A cell's coordinate within the period of its axis, if it has one.
 #[inline(always)]
-fn wrap<R: Real>(cell: R, period: f64) -> R {
+pub(crate) fn wrap<R: Real>(cell: R, period: f64) -> R {
     if period == 0.0 {
         return cell;
     }

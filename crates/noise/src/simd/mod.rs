@@ -17,7 +17,7 @@ mod sse;
 use std::sync::OnceLock;
 
 use crate::basis::Tables;
-use crate::number::Real;
+use crate::number::{Integer, Real};
 
 /// An evaluation of `D` inputs to one value.
 pub trait Kernel<const D: usize> {
@@ -314,9 +314,77 @@ fn map_avx512<K: Outputs<D, N>, const D: usize, const N: usize>(
 }
 
 /// A number made of `LANES` lanes.
-trait Vector<const LANES: usize>: Real {
+pub(crate) trait Vector<const LANES: usize>: Real {
     fn load(lanes: &[f32; LANES]) -> Self;
     fn store(self, lanes: &mut [f32; LANES]);
+    /// The same number in every lane.
+    fn splat(value: f32) -> Self;
+    fn load_int(lanes: &[i32; LANES]) -> Self::Int;
+    /// The window's numbers at these places, which are below `LANES`.
+    fn expand(window: &[f32; LANES], places: Self::Int) -> Self;
+}
+
+impl Vector<1> for f32 {
+    #[inline(always)]
+    fn load(lanes: &[f32; 1]) -> Self {
+        lanes[0]
+    }
+    #[inline(always)]
+    fn store(self, lanes: &mut [f32; 1]) {
+        lanes[0] = self;
+    }
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn load_int(lanes: &[i32; 1]) -> Self::Int {
+        Self::Int::constant(lanes[0])
+    }
+    #[inline(always)]
+    fn expand(window: &[f32; 1], _places: Self::Int) -> Self {
+        window[0]
+    }
+}
+
+/// Work written for vectors of any width.
+pub(crate) trait Wide {
+    /// Does it. Mark it `#[inline(always)]`, as a kernel.
+    fn run<V: Vector<LANES>, const LANES: usize>(self);
+}
+
+/// Does the work with the instructions of a level, at most those of the machine.
+pub(crate) fn run_wide<W: Wide>(level: Level, work: W) {
+    match level.min(machine_level()) {
+        Level::Scalar => work.run::<f32, 1>(),
+        // SAFETY, for the three: the machine has the instructions, `machine_level` says.
+        #[cfg(target_arch = "x86_64")]
+        Level::Sse => unsafe { run_wide_sse(work) },
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 => unsafe { run_wide_avx2(work) },
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => unsafe { run_wide_avx512(work) },
+        #[cfg(not(target_arch = "x86_64"))]
+        _ => work.run::<f32, 1>(),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "sse4.1")]
+fn run_wide_sse<W: Wide>(work: W) {
+    work.run::<sse::F32x4, 4>();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn run_wide_avx2<W: Wide>(work: W) {
+    work.run::<avx2::F32x8, 8>();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
+fn run_wide_avx512<W: Wide>(work: W) {
+    work.run::<avx512::F32x16, 16>();
 }
 
 /// Whole vectors first, then the rest in a vector filled up with zeros.

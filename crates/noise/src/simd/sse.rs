@@ -168,4 +168,17 @@ impl Vector<4> for F32x4 {
     fn store(self, lanes: &mut [f32; 4]) {
         unsafe { _mm_storeu_ps(lanes.as_mut_ptr(), self.0) }
     }
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        F32x4(unsafe { _mm_set1_ps(value) })
+    }
+    #[inline(always)]
+    fn load_int(lanes: &[i32; 4]) -> I32x4 {
+        I32x4(unsafe { _mm_loadu_si128(lanes.as_ptr().cast()) })
+    }
+    #[inline(always)]
+    fn expand(window: &[f32; 4], places: I32x4) -> Self {
+        let [a, b, c, d] = places.indices().map(|place| window[place % 4]);
+        F32x4(unsafe { _mm_setr_ps(a, b, c, d) })
+    }
 }

@@ -8,7 +8,7 @@ pub(super) const HYBRID_OFFSET: f64 = 0.7;
 /// The gain by which he weights an octave of the ridged sum with the one before.
 const RIDGED_WEIGHT: f64 = 2.0;
 
-/// What an octave adds to a [`Sum`].
+/// What an octave adds to a [`Sum`](crate::Sum).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Combine {
     /// The noise itself: fractional Brownian motion, mean zero.
@@ -56,7 +56,7 @@ impl Combine {
 
     /// The noise, or its absolute value.
     #[inline(always)]
-    pub(super) fn fold<R: Real, const D: usize, const G: bool>(self, mut noise: Dual<R, D>) -> Dual<R, D> {
+    pub(crate) fn fold<R: Real, const D: usize, const G: bool>(self, mut noise: Dual<R, D>) -> Dual<R, D> {
         if self.folds() {
             let negative = noise.value.less(R::constant(0.0));
             noise.value = noise.value.abs();
@@ -88,7 +88,7 @@ impl Combine {
 
 /// A sum of the octaves so far.
 #[derive(Clone, Copy)]
-pub(super) struct Partial<R, const D: usize> {
+pub(crate) struct Partial<R, const D: usize> {
     pub sum: Dual<R, D>,
     /// What the next octave of a multifractal sum is multiplied by.
     pub weight: Dual<R, D>,

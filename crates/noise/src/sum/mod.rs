@@ -9,7 +9,8 @@ mod octaves;
 use std::sync::Arc;
 
 pub use combine::Combine;
-use combine::{HYBRID_OFFSET, Partial};
+use combine::HYBRID_OFFSET;
+pub(crate) use combine::Partial;
 
 use crate::filter::Fade;
 use crate::noise::Noise;
@@ -108,6 +109,11 @@ impl Sum {
     /// What each octave adds.
     pub fn combine(&self) -> Combine {
         self.combine
+    }
+
+    /// The frequency and the amplitude of each octave.
+    pub(crate) fn frequencies_and_amplitudes(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.scales.frequencies.iter().copied().zip(self.scales.amplitudes.iter().copied())
     }
 
     /// The number of octaves, with one that fades in counted as a whole one.

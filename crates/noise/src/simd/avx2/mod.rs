@@ -204,12 +204,6 @@ fn lines() -> [__m256; 3] {
 }
 
 impl F32x8 {
-    /// The same number in every lane.
-    #[inline(always)]
-    pub fn splat(value: f32) -> Self {
-        F32x8(unsafe { _mm256_set1_ps(value) })
-    }
-
     /// Negated where bit 3 of `code` is set.
     #[inline(always)]
     fn negated_by(self, code: I32x8) -> Self {
@@ -226,5 +220,17 @@ impl Vector<8> for F32x8 {
     #[inline(always)]
     fn store(self, lanes: &mut [f32; 8]) {
         unsafe { _mm256_storeu_ps(lanes.as_mut_ptr(), self.0) }
+    }
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        F32x8(unsafe { _mm256_set1_ps(value) })
+    }
+    #[inline(always)]
+    fn load_int(lanes: &[i32; 8]) -> I32x8 {
+        I32x8(unsafe { _mm256_loadu_si256(lanes.as_ptr().cast()) })
+    }
+    #[inline(always)]
+    fn expand(window: &[f32; 8], places: I32x8) -> Self {
+        F32x8(unsafe { _mm256_permutevar8x32_ps(_mm256_loadu_ps(window.as_ptr()), places.0) })
     }
 }

@@ -46,7 +46,7 @@ fn octaves(tables: &Tables, frequencies: F32x8, count: usize, point: [f32; 3]) -
     let mut offset = [frequencies; 3];
     let mut cells = [[0u32; 8]; 3];
     for axis in 0..3 {
-        let position = F32x8(_mm256_set1_ps(point[axis])) * frequencies;
+        let position = F32x8::splat(point[axis]) * frequencies;
         let floor = position.floor();
         offset[axis] = position - floor;
         // SAFETY: there is room for eight.

@@ -199,4 +199,16 @@ impl Vector<16> for F32x16 {
     fn store(self, lanes: &mut [f32; 16]) {
         unsafe { _mm512_storeu_ps(lanes.as_mut_ptr(), self.0) }
     }
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        F32x16(unsafe { _mm512_set1_ps(value) })
+    }
+    #[inline(always)]
+    fn load_int(lanes: &[i32; 16]) -> I32x16 {
+        I32x16(unsafe { _mm512_loadu_si512(lanes.as_ptr().cast()) })
+    }
+    #[inline(always)]
+    fn expand(window: &[f32; 16], places: I32x16) -> Self {
+        F32x16(unsafe { _mm512_permutexvar_ps(places.0, _mm512_loadu_ps(window.as_ptr())) })
+    }
 }

@@ -1,0 +1,83 @@
+//! Uniform grids against the evaluation point by point.
+
+use jaspe_noise::simd::Level;
+use jaspe_noise::{Basis, Combine, Grid, Noise, Sum};
+
+/// The sums on a grid, point by point.
+fn point_by_point<const D: usize>(sum: &Sum, grid: &Grid<D>) -> Vec<f32> {
+    let point = |index: usize| -> [f32; D] {
+        let mut rest = index;
+        std::array::from_fn(|axis| {
+            let at = rest % grid.count[axis];
+            rest /= grid.count[axis];
+            grid.coordinate(axis, at)
+        })
+    };
+    (0..grid.len()).map(|index| sum.value(point(index))).collect()
+}
+
+/// Holds a grid to the evaluation point by point, and every level to the scalar one.
+fn check<const D: usize>(sum: &Sum, grid: &Grid<D>, bound: f32) {
+    let expected = point_by_point(sum, grid);
+    let mut reference = vec![f32::MAX; grid.len()];
+    sum.fill_grid_at(Level::Scalar, grid, &mut reference);
+    for (i, (value, expected)) in reference.iter().zip(&expected).enumerate() {
+        let same = value.is_nan() && expected.is_nan() || (value - expected).abs() <= bound;
+        assert!(same, "{sum:?} on {grid:?}, point {i}: {value}, {expected}");
+    }
+    for level in Level::ALL {
+        let mut values = vec![f32::MAX; grid.len()];
+        sum.fill_grid_at(level, grid, &mut values);
+        let wrong = values.iter().zip(&reference).position(|(a, b)| a.to_bits() != b.to_bits() && !a.is_nan());
+        assert_eq!(wrong, None, "{sum:?} on {grid:?} at {level:?}");
+    }
+}
+
+#[test]
+fn grids_are_within_rounding_of_points_and_the_same_at_every_level() {
+    for &basis in Basis::ALL {
+        for &combine in Combine::ALL {
+            for period in [[0; 3], [3, 0, 7]] {
+                let Ok(noise) = Noise::new(basis, 3).with_period(period) else { continue };
+                let sum = Sum::new(noise, combine, 3);
+                let by_cells = matches!(basis, Basis::Improved | Basis::Classic | Basis::Lattice | Basis::Value);
+                let several = if matches!(combine, Combine::Plain | Combine::Absolute) { 1.75 } else { 17.5 };
+                let bound = if by_cells { 2e-6 * several } else { 0.0 };
+                check(&sum, &Grid { origin: [-1.3, 2.0, 255.1], step: [0.05, 0.1, 0.22], count: [41, 23, 9] }, bound);
+                check(&sum, &Grid { origin: [-7.7, -3.9], step: [0.2, 0.24], count: [67, 18] }, bound);
+                check(&sum, &Grid { origin: [-7.7], step: [0.01], count: [130] }, bound);
+                // Too wide for cells, or backwards: point by point.
+                check(&sum, &Grid { origin: [0.5, 0.5], step: [0.7, 0.1], count: [19, 7] }, bound);
+                check(&sum, &Grid { origin: [0.5, 0.5], step: [-0.1, 0.0], count: [19, 2] }, bound);
+            }
+        }
+    }
+}
+
+#[test]
+fn grids_of_any_kind_have_values() {
+    let sum = Sum::new(Noise::new(Basis::Improved, 0), Combine::Plain, 2);
+    for origin in [3e7, -1e20, f32::MAX, f32::NAN, f32::INFINITY] {
+        check(&sum, &Grid { origin: [0.0, origin], step: [0.1, 0.1], count: [20, 3] }, 4e-6);
+        check(&sum, &Grid { origin: [origin, 0.0, 0.3], step: [0.1, 0.1, 0.2], count: [20, 3, 2] }, 4e-6);
+    }
+    check(&sum, &Grid { origin: [0.0; 4], step: [0.3; 4], count: [5, 3, 4, 2] }, 0.0);
+    check(&sum, &Grid { origin: [0.0; 2], step: [f32::NAN, 0.1], count: [3, 2] }, 0.0);
+    sum.fill_grid(&Grid { origin: [0.0; 2], step: [0.1; 2], count: [0, 7] }, &mut []);
+    assert!(Grid { origin: [0.0; 2], step: [0.1; 2], count: [0, 7] }.is_empty());
+    let none = Sum::new(Noise::new(Basis::Improved, 0), Combine::Plain, 0);
+    check(&none, &Grid { origin: [0.0; 2], step: [0.1; 2], count: [9, 7] }, 0.0);
+}
+
+#[test]
+fn a_coordinate_of_a_grid_is_rounded_once() {
+    let grid = Grid { origin: [0.1], step: [0.02], count: [256] };
+    assert_eq!(grid.coordinate(0, 255), (0.1f32 as f64 + 255.0 * 0.02f32 as f64) as f32);
+}
+
+#[test]
+#[should_panic(expected = "there is a value for each point of the grid")]
+fn a_slice_of_another_length_is_refused() {
+    let grid = Grid { origin: [0.0; 2], step: [0.1; 2], count: [4, 4] };
+    Noise::new(Basis::Improved, 0).fill_grid(&grid, &mut [0.0; 15]);
+}
