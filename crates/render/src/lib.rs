@@ -38,6 +38,8 @@ mod camera;
 mod compile;
 mod develop;
 mod encode;
+#[cfg_attr(not(test), expect(dead_code, unused_imports, reason = "wired in by the next commit"))]
+mod environment;
 mod film;
 mod filter;
 mod geometry;

@@ -122,8 +122,13 @@ impl PictureMap {
         PictureMap { width, height, pixels: picture.pixels, decode }
     }
 
+    /// Columns and rows.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
     /// The pixel of a column and a row counted from the top.
-    fn texel(&self, column: usize, row: usize) -> Vec3 {
+    pub fn texel(&self, column: usize, row: usize) -> Vec3 {
         let at = row * self.width + column;
         match &self.pixels {
             PicturePixels::Bytes(bytes) => Vec3::from_array(bytes[at].map(|byte| self.decode[byte as usize])),
@@ -154,6 +159,11 @@ impl PictureMap {
         let axis = |t: f32, size: usize| ((t * size as f32).max(0.0) as usize).min(size - 1);
         self.texel(axis(uv.x, self.width), axis(uv.y, self.height))
     }
+}
+
+/// Sunflow's brightness of a linear colour.
+pub(crate) fn luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2989, 0.5866, 0.1145))
 }
 
 /// Schlick's approximation of a mirror's reflectance; `color` is what it reflects head-on.

@@ -81,12 +81,14 @@ impl Color {
 const RGB_FROM_XYZ: [[f64; 3]; 3] =
     [[3.2410042, -1.5373994, -0.49861607], [-0.9692241, 1.8759298, 0.041554242], [0.05563942, -0.20401107, 1.0571486]];
 
-fn rgb_from_xyz(xyz: [f64; 3]) -> [f32; 3] {
+/// CIE 1931 XYZ (white at Y = 1) in linear sRGB; negative outside of the gamut.
+pub fn rgb_from_xyz(xyz: [f64; 3]) -> [f32; 3] {
     RGB_FROM_XYZ.map(|row| (row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]) as f32)
 }
 
-/// Integrates an intensity, a function of the wavelength in nanometres, against the matching functions.
-fn xyz_from_spectrum(intensity: impl Fn(f64) -> f64) -> [f64; 3] {
+/// Integrates an intensity, a function of the wavelength in nanometres, against the CIE 1931 matching functions, in steps
+/// of 5 nm from 360 to 830 nm.
+pub fn xyz_from_spectrum(intensity: impl Fn(f64) -> f64) -> [f64; 3] {
     let mut xyz = [0.0; 3];
     for (i, matching) in cie::MATCHING.iter().enumerate() {
         let value = intensity(cie::FIRST + cie::STEP * i as f64);

@@ -14,7 +14,7 @@ mod shader;
 mod transform;
 
 pub use camera::{Camera, Lens, View};
-pub use color::{Color, ColorSpec};
+pub use color::{Color, ColorSpec, rgb_from_xyz, xyz_from_spectrum};
 pub use gi::{Caustics, Gi, GiKind, GlobalPhotons, PhotonMap};
 pub use image::{Filter, Image, Sampler};
 pub use light::{CornellBox, Ground, Light, LightKind, Triangles};
