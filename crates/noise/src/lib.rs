@@ -77,5 +77,6 @@ pub use basis::cellular::{Cellular, Feature, Metric};
 pub use grid::Grid;
 pub use noise::{Noise, PeriodError};
 pub use number::{Dual, Integer, Mask, Real};
+pub use seed::permutation;
 pub use sum::{Combine, Sum};
 pub use table::{ByteTable, FloatTable, PairTable};

@@ -27,6 +27,13 @@ impl Affine {
     pub fn transposed(&self, n: Vec3) -> Vec3 {
         Vec3::new(self.columns[0].dot(n), self.columns[1].dot(n), self.columns[2].dot(n))
     }
+
+    /// Applies the inverse of the transpose: takes normals along with the surface.
+    pub fn normal(&self, n: Vec3) -> Vec3 {
+        let [x, y, z] = self.columns;
+        let yz = y.cross(z);
+        (yz * n.x + z.cross(x) * n.y + x.cross(y) * n.z) / x.dot(yz)
+    }
 }
 
 impl From<DMat4> for Affine {

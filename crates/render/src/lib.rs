@@ -47,6 +47,8 @@ mod light;
 mod material;
 mod math;
 mod mesh_file;
+#[cfg_attr(not(test), expect(dead_code, reason = "wired in by the next commit"))]
+mod modifier;
 mod options;
 mod picture;
 mod report;

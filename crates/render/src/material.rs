@@ -117,6 +117,18 @@ impl PictureMap {
         PictureMap::new(std::array::from_fn(|i| i as f32 / 255.0), picture)
     }
 
+    /// For modifiers: display values as they are. Sunflow: a single channel counts as linear light, which is encoded on
+    /// reading, to eight bits (R12).
+    #[cfg_attr(not(test), expect(dead_code, reason = "wired in by the next commit"))]
+    pub fn raw(picture: Picture) -> Self {
+        let decode = |i: usize| {
+            let value = i as f64 / 255.0;
+            let encoded = || (jaspe_scene::srgb_encode(value) * 255.0).round() / 255.0;
+            (if picture.grayscale { encoded() } else { value }) as f32
+        };
+        PictureMap::new(std::array::from_fn(decode), picture)
+    }
+
     fn new(decode: [f32; 256], picture: Picture) -> Self {
         let (width, height) = (picture.width as usize, picture.height as usize);
         PictureMap { width, height, pixels: picture.pixels, decode }
