@@ -38,7 +38,6 @@ mod camera;
 mod compile;
 mod develop;
 mod encode;
-#[cfg_attr(not(test), expect(dead_code, unused_imports, reason = "wired in by the next commit"))]
 mod environment;
 mod film;
 mod filter;
@@ -47,7 +46,6 @@ mod light;
 mod material;
 mod math;
 mod mesh_file;
-#[cfg_attr(not(test), expect(dead_code, reason = "wired in by the next commit"))]
 mod modifier;
 mod options;
 mod picture;

@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 use jaspe_texture::{Space, Texture};
 
 use crate::geometry::Rows;
+use crate::modifier::Modifier;
 use crate::options::Look;
 use crate::picture::{Picture, PicturePixels};
 
@@ -17,12 +18,18 @@ pub(crate) const BLACK: u32 = 0;
 pub(crate) struct Material {
     pub albedo: Albedo,
     pub response: Response,
+    /// What turns the normals.
+    pub modifier: Option<Arc<Modifier>>,
 }
 
 impl Material {
+    pub fn new(albedo: Albedo, response: Response) -> Self {
+        Material { albedo, response, modifier: None }
+    }
+
     /// See [`BLACK`].
     pub fn black() -> Self {
-        Material { albedo: Albedo::Color(Vec3::ZERO), response: Response::Constant }
+        Material::new(Albedo::Color(Vec3::ZERO), Response::Constant)
     }
 }
 
@@ -32,25 +39,75 @@ pub(crate) enum Albedo {
     Color(Vec3),
     Picture(Arc<PictureMap>),
     Procedural(Box<Procedural>),
+    /// A colour, and so much of another over it.
+    Blend {
+        color: Vec3,
+        over: Box<Albedo>,
+        amount: f32,
+    },
 }
 
 /// What a surface does with light. Colours are in the dialect's working space.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) enum Response {
     /// Shines by itself (Sunflow), or matte (report).
     Constant,
-    /// Matte.
-    Matte,
-    /// Matte with a glossy lobe.
-    Phong { specular: Vec3, power: f32, samples: u32 },
+    /// Shines by itself to its front, black from behind; seen by rays that are not blurred.
+    Emitter,
+    /// Matte, with something over it.
+    Matte(Coat),
     /// A mirror tinted by the albedo.
     Mirror,
     /// Clear glass tinted by the albedo; `absorption` per world unit.
     Glass { eta: f32, absorption: Vec3 },
-    /// One of the six: matte, with a touch of reflection.
-    Procedural { reflection: f32, transmission: f32 },
+    /// How much of the surroundings is open: the albedo where it is, `dark` where something stands nearer than
+    /// `distance`.
+    AmbientOcclusion { dark: Vec3, samples: u32, distance: f32 },
+    /// Lines along the edges of triangles, up to `width` radians from them as seen from the camera.
+    Wireframe { line: Vec3, width: f32 },
+    /// The indirect light that arrives.
+    ViewIrradiance,
+    /// The caustic light that arrives.
+    ViewCaustics,
     /// A quick look.
     Look(Look),
+}
+
+/// What lies over a matte surface.
+#[derive(Debug, Clone)]
+pub(crate) enum Coat {
+    None,
+    /// A glossy lobe around the mirror direction, and so many rays into it.
+    Phong {
+        specular: Gloss,
+        power: f32,
+        samples: u32,
+    },
+    /// Ward's anisotropic highlight.
+    Ward {
+        specular: Gloss,
+        roughness: [f32; 2],
+        samples: u32,
+    },
+    /// A mirror, clearer at grazing angles.
+    Mirror {
+        specular: Gloss,
+    },
+    /// One of the six: a touch of reflection.
+    Touch {
+        reflection: f32,
+        transmission: f32,
+    },
+}
+
+/// The colour of a coat.
+#[derive(Debug, Clone)]
+pub(crate) enum Gloss {
+    Color(Vec3),
+    /// So many times the albedo.
+    Albedo(f32),
+    /// A colour that varies.
+    Painted(Box<Albedo>),
 }
 
 /// A procedural texture and how the renderer uses it.
@@ -119,7 +176,6 @@ impl PictureMap {
 
     /// For modifiers: display values as they are. Sunflow: a single channel counts as linear light, which is encoded on
     /// reading, to eight bits (R12).
-    #[cfg_attr(not(test), expect(dead_code, reason = "wired in by the next commit"))]
     pub fn raw(picture: Picture) -> Self {
         let decode = |i: usize| {
             let value = i as f64 / 255.0;
@@ -176,17 +232,4 @@ impl PictureMap {
 /// Sunflow's brightness of a linear colour.
 pub(crate) fn luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2989, 0.5866, 0.1145))
-}
-
-/// Schlick's approximation of a mirror's reflectance; `color` is what it reflects head-on.
-pub(crate) fn schlick(color: Vec3, cosine: f32) -> Vec3 {
-    let rest = 1.0 - cosine;
-    let rest2 = rest * rest;
-    color + (Vec3::ONE - color) * (rest2 * rest2 * rest)
-}
-
-/// What is left of the light after `length` world units of absorbing glass.
-pub(crate) fn transmittance(absorption: Vec3, length: f32) -> Vec3 {
-    let along = |a: f32| if a == 0.0 { 1.0 } else { jaspe_noise::math::exp(-f64::from(a * length)) as f32 };
-    Vec3::new(along(absorption.x), along(absorption.y), along(absorption.z))
 }

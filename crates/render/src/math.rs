@@ -39,6 +39,35 @@ pub(crate) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     }
 }
 
+/// Sine and cosine of an angle in turns, from -64 to 64; errors below 2e-7 (coefficients of [Moshier 1989] Cephes, `sinf`
+/// and `cosf`).
+#[inline]
+pub(crate) fn sin_cos_turns(turns: f32) -> (f32, f32) {
+    // To the nearest quarter: adding 1.5 · 2²³ leaves no room for a fraction.
+    const SHIFT: f32 = 12_582_912.0;
+    let shifted = turns * 4.0 + SHIFT;
+    let quarter = shifted.to_bits();
+    let x = (turns * 4.0 - (shifted - SHIFT)) * std::f32::consts::FRAC_PI_2;
+    let x2 = x * x;
+    let sin = x + x * x2 * (-1.666_665_5e-1 + x2 * (8.332_161e-3 + x2 * -1.951_529_6e-4));
+    let cos = 1.0 - 0.5 * x2 + x2 * x2 * (4.166_664_6e-2 + x2 * (-1.388_731_6e-3 + x2 * 2.443_315_7e-5));
+    let (sin, cos) = if quarter & 1 == 0 { (sin, cos) } else { (cos, -sin) };
+    if quarter & 2 == 0 { (sin, cos) } else { (-sin, -cos) }
+}
+
+/// The direction that a circle around `w` has at `turn` of a full turn: `sine` away from it, `cosine` along it.
+#[inline]
+pub(crate) fn around(w: Vec3, turn: f32, sine: f32, cosine: f32) -> Vec3 {
+    let (u, v) = basis(w);
+    let (sin, cos) = sin_cos_turns(turn);
+    u * (sine * cos) + v * (sine * sin) + w * cosine
+}
+
+/// A direction of the hemisphere around `normal`, its density proportional to the cosine.
+pub(crate) fn cosine_hemisphere(normal: Vec3, [u, v]: [f32; 2]) -> Vec3 {
+    around(normal, u, v.sqrt(), (1.0 - v).sqrt())
+}
+
 /// Arctangent of y/x in the right quadrant, -π to π; error below 3e-7.
 pub(crate) fn atan2(y: f32, x: f32) -> f32 {
     let (ax, ay) = (f64::from(x.abs()), f64::from(y.abs()));
@@ -108,6 +137,24 @@ pub(crate) fn basis(w: Vec3) -> (Vec3, Vec3) {
     (Vec3::new(1.0 + sign * w.x * w.x * a, sign * b, -sign * w.x), Vec3::new(b, sign + w.y * w.y * a, -w.y))
 }
 
+/// Axes of a surface: two along it, the second as near to `along` as can be, and its normal. Without `along` the choice is
+/// Sunflow's (format reference, §0: `basisW`, `basisWV`).
+pub(crate) fn frame(w: Vec3, along: Option<Vec3>) -> [Vec3; 3] {
+    if let Some(u) = along.and_then(|v| v.cross(w).try_normalize()) {
+        return [u, w.cross(u), w];
+    }
+    let a = w.abs();
+    let v = if a.x < a.y && a.x < a.z {
+        Vec3::new(0.0, w.z, -w.y)
+    } else if a.y < a.z {
+        Vec3::new(w.z, 0.0, -w.x)
+    } else {
+        Vec3::new(w.y, -w.x, 0.0)
+    };
+    let v = v.normalize_or(Vec3::X);
+    [v.cross(w), v, w]
+}
+
 /// `point`, moved off its surface along `side` by a few units in the last place of its coordinates, so that a ray
 /// from there does not meet the surface again ([Wächter, Binder 2019] "A Fast and Robust Method for Avoiding
 /// Self-Intersection", Ray Tracing Gems, ch. 6).
@@ -138,6 +185,17 @@ pub(crate) fn pow(base: f32, exponent: f32) -> f32 {
 #[allow(clippy::disallowed_methods, reason = "our functions are held against the platform's")]
 mod tests {
     use super::*;
+
+    #[test]
+    fn turns_are_degrees() {
+        for i in -4000..=4000 {
+            let turns = i as f32 / 1000.0;
+            let (sin, cos) = sin_cos_turns(turns);
+            let (exact_sin, exact_cos) = sin_cos_degrees(f64::from(turns) * 360.0);
+            assert!((f64::from(sin) - exact_sin).abs() < 2e-7 && (f64::from(cos) - exact_cos).abs() < 2e-7, "{turns}");
+        }
+        assert_eq!((sin_cos_turns(0.25), sin_cos_turns(0.5)), ((1.0, 0.0), (0.0, -1.0)));
+    }
 
     #[test]
     fn trigonometry_is_exact_at_quarter_turns_and_close_elsewhere() {

@@ -84,6 +84,8 @@ pub struct Stats {
     pub reflection_rays: u64,
     /// Refracted rays.
     pub refraction_rays: u64,
+    /// Rays that look for light from other surfaces.
+    pub gather_rays: u64,
     /// Points at which a procedural texture was evaluated.
     pub texture_points: u64,
     /// Threads that worked.
@@ -100,6 +102,7 @@ impl Stats {
             shadow_rays: self.shadow_rays + other.shadow_rays,
             reflection_rays: self.reflection_rays + other.reflection_rays,
             refraction_rays: self.refraction_rays + other.refraction_rays,
+            gather_rays: self.gather_rays + other.gather_rays,
             texture_points: self.texture_points + other.texture_points,
             threads: self.threads.max(other.threads),
         }

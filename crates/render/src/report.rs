@@ -106,7 +106,7 @@ impl Report {
         let count = batch.members.len();
         colors.resize(count, [0.0; 3]);
         match &batch.material.albedo {
-            Albedo::Color(color) => colors.fill(color.to_array()),
+            Albedo::Color(color) | Albedo::Blend { color, .. } => colors.fill(color.to_array()),
             Albedo::Picture(picture) => {
                 colors.iter_mut().enumerate().for_each(|(i, color)| *color = picture.nearest(uv(i)).to_array());
             }
@@ -127,7 +127,7 @@ impl Report {
         match geometry.objects[hit.id.object as usize].shape {
             Shape::Sphere { center, .. } => center,
             Shape::Plane(index) => geometry.planes[index as usize].point,
-            _ => triangle(geometry, hit).map_or(Vec3::ZERO, |[a, b, c]| (a + b + c) / 3.0 - Vec3::Y),
+            _ => geometry.triangle(hit).map_or(Vec3::ZERO, |[a, b, c]| (a + b + c) / 3.0 - Vec3::Y),
         }
     }
 
@@ -185,18 +185,5 @@ impl Report {
             [along.cross(plane.normal).normalize_or(math::basis(plane.normal).1), along]
         };
         self.plane_axes = geometry.planes.iter().zip(&first).map(axes).collect();
-    }
-}
-
-/// The corners of the triangle that was hit, in the world.
-fn triangle(geometry: &Geometry, hit: &Hit) -> Option<[Vec3; 3]> {
-    let object = &geometry.objects[hit.id.object as usize];
-    match object.shape {
-        Shape::Mesh(index) => Some(geometry.meshes[index as usize].triangle_points(hit.id.index as usize)),
-        Shape::MeshInstance(index) => {
-            let corners = geometry.meshes[index as usize].triangle_points(hit.id.index as usize);
-            Some(corners.map(|corner| object.world_from_object.point(corner)))
-        }
-        _ => None,
     }
 }

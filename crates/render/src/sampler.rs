@@ -20,6 +20,12 @@ impl SampleKey {
         SampleKey { pixel: hash(x ^ hash(y ^ seed)), index }
     }
 
+    /// The key of part `i` of `count`, into which this sample divides.
+    #[inline]
+    pub fn nth(&self, i: u32, count: u32) -> Self {
+        SampleKey { pixel: self.pixel, index: self.index.wrapping_mul(count).wrapping_add(i) }
+    }
+
     /// The pair of dimensions `dimension`, each in [0, 1).
     #[inline]
     pub fn pair(&self, dimension: u32) -> [f32; 2] {

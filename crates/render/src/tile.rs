@@ -171,8 +171,20 @@ pub(crate) fn render(
     observer: &dyn Observer,
 ) -> Result<(Film, Stats), Cancelled> {
     match &scene.meaning {
-        Meaning::Sunflow { rules, .. } => Job::new(scene, rules, options, observer).run(),
-        Meaning::Report { rules, .. } => Job::new(scene, rules, options, observer).run(),
+        Meaning::Sunflow { rules, .. } => in_pool(options, || {
+            let rules = rules.prepare(&scene.world);
+            Job::new(scene, &rules, options, observer).passes()
+        }),
+        Meaning::Report { rules, .. } => in_pool(options, || Job::new(scene, rules, options, observer).passes()),
+    }
+}
+
+/// Runs work on as many threads as asked for.
+fn in_pool<T: Send>(options: &RenderOptions, work: impl FnOnce() -> T + Send) -> T {
+    match rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build() {
+        Ok(pool) => pool.install(work),
+        // No threads to be had: work goes on in this one's own pool.
+        Err(_) => work(),
     }
 }
 
@@ -203,16 +215,6 @@ impl<'a, R: Rules> Job<'a, R> {
             [x0.saturating_sub(margin), y0.saturating_sub(margin), (x1 + margin).min(width), (y1 + margin).min(height)];
         let (done, total) = (AtomicU64::new(0), AtomicU64::new(0));
         Job { scene, rules, options, observer, crop: Rect(crop), region: Rect(region), done, total }
-    }
-
-    fn run(&self) -> Result<(Film, Stats), Cancelled> {
-        let threads = self.options.threads.unwrap_or(0);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        match pool {
-            Ok(pool) => pool.install(|| self.passes()),
-            // No threads to be had: work goes on in this one's own pool.
-            Err(_) => self.passes(),
-        }
     }
 
     fn passes(&self) -> Result<(Film, Stats), Cancelled> {

@@ -22,6 +22,8 @@ pub(crate) enum RayKind {
     /// A ray into a glossy lobe: sees neither mirrors nor glass behind it.
     Glossy,
     Refraction,
+    /// A ray that looks for light from other matte surfaces; sees what a glossy one sees.
+    Gather,
 }
 
 /// How often a path has bounced.
@@ -41,6 +43,10 @@ impl Depth {
         Depth { reflection: self.reflection.saturating_add(1), ..self }
     }
 
+    pub fn diffused(self) -> Depth {
+        Depth { diffuse: self.diffuse.saturating_add(1), ..self }
+    }
+
     pub fn refracted(self) -> Depth {
         Depth { refraction: self.refraction.saturating_add(1), ..self }
     }
@@ -53,6 +59,8 @@ pub(crate) struct Path {
     pub weight: Vec3,
     /// The node that gathers its light.
     pub node: u32,
+    /// Index of the path in its pixel's sequence: see [`SampleKey::nth`].
+    pub index: u32,
     pub kind: RayKind,
     pub depth: Depth,
 }
@@ -230,7 +238,7 @@ pub(crate) struct Workspace<R: Rules> {
     materials: Vec<u32>,
     /// Positions of rays that met nothing.
     misses: Vec<u32>,
-    room: R::Room,
+    pub room: R::Room,
     scratch: Scratch,
     pub queues: Queues<R::Node>,
     pub results: Results,
@@ -285,8 +293,8 @@ impl<R: Rules> Workspace<R> {
         let Workspace { queues: Queues { next, nodes, stats }, results, .. } = self;
         next.clear();
         std::mem::swap(&mut next.rays, &mut samples.rays);
-        let path = Path { weight: Vec3::ONE, node: 0, kind: RayKind::Camera, depth: Depth::default() };
-        next.paths.extend((0..count as u32).map(|node| Path { node, ..path }));
+        let path = Path { weight: Vec3::ONE, node: 0, index: 0, kind: RayKind::Camera, depth: Depth::default() };
+        next.paths.extend((0..).zip(&samples.keys).map(|(node, key)| Path { node, index: key.index, ..path }));
         nodes.clear();
         nodes.resize(count, R::Node::default());
         results.covered.clear();
@@ -302,9 +310,14 @@ impl<R: Rules> Workspace<R> {
             stats.camera_rays += paths.len() as u64;
             return;
         }
-        let refracted = paths.iter().filter(|path| path.kind == RayKind::Refraction).count() as u64;
-        stats.refraction_rays += refracted;
-        stats.reflection_rays += paths.len() as u64 - refracted;
+        for path in paths {
+            match path.kind {
+                RayKind::Camera => stats.camera_rays += 1,
+                RayKind::Reflection | RayKind::Glossy => stats.reflection_rays += 1,
+                RayKind::Refraction => stats.refraction_rays += 1,
+                RayKind::Gather => stats.gather_rays += 1,
+            }
+        }
     }
 
     /// Counting sort of the hits by material; misses are set apart.

@@ -29,13 +29,18 @@ fn cube(shader: &str, r: f32) -> String {
 }
 
 fn film(text: &str) -> Film {
+    part(text, None)
+}
+
+/// The picture, or a part of it: x0, y0, x1, y1.
+fn part(text: &str, crop: Option<[u32; 4]>) -> Film {
     let loader = MemoryLoader::default();
     let (scene, diagnostics) = parse(Path::new("micro.sc"), text.as_bytes(), &loader);
     assert!(!diagnostics.has_errors(), "{diagnostics:?}\n{text}");
     let compiled = compile(&scene, &loader, &CompileOptions::default());
     assert!(!compiled.diagnostics.has_errors(), "{:?}", compiled.diagnostics);
     let scene = compiled.scene.expect("no errors");
-    render(&scene, &RenderOptions::default(), &()).expect("not cancelled").0
+    render(&scene, &RenderOptions { crop, ..RenderOptions::default() }, &()).expect("not cancelled").0
 }
 
 #[track_caller]
@@ -178,4 +183,173 @@ fn depth_of_field_blurs_what_is_out_of_focus() {
     assert!(partial(&blurred) > 3 * partial(&sharp), "{} against {}", partial(&blurred), partial(&sharp));
     let total = |film: &Film| film.pixels.iter().map(|p| p[0]).sum::<f32>();
     assert!((total(&blurred) / total(&sharp) - 1.0).abs() < 0.1);
+}
+
+#[test]
+fn a_shining_sphere_lights_a_floor() {
+    let light = "light { type spherical color 1 1 1 radiance 10 center 3 0 3 radius 1 samples 256 }";
+    micro(&format!("{DIFFUSE}{PLANE}{light}"), [31, 32], [0.19650; 3], 1e-3);
+}
+
+#[test]
+fn a_shining_sphere_is_seen_and_does_not_shine_inwards() {
+    let light = |z: f32, r: f32| {
+        format!("light {{ type spherical color 1 0.5 0.25 radiance 3 center 0 0 {z} radius {r} samples 1 }}")
+    };
+    micro(&light(0.0, 1.0), [31, 32], [3.0, 1.5, 0.75], 0.0);
+    micro(&light(5.0, 2.0), [31, 32], [0.0; 3], 0.0);
+}
+
+/// Irradiance, over π, right above the middle of a square of half size `a` at distance `h` that shines with radiance 1.
+fn square_light(a: f32, h: f32) -> f32 {
+    // Four times the form factor of a square over one of its corners (Howell, A Catalog of Radiation Heat Transfer
+    // Configuration Factors, B-3).
+    let x = f64::from(a / h);
+    let part = x / (1.0 + x * x).sqrt();
+    (4.0 * 2.0 / std::f64::consts::TAU * part * angle(part)) as f32
+}
+
+/// Arctangent by its series with halved arguments: the tests have no platform functions either.
+fn angle(t: f64) -> f64 {
+    let half = |t: f64| t / (1.0 + (1.0 + t * t).sqrt());
+    let t = half(half(half(t)));
+    8.0 * (t - t.powi(3) / 3.0 + t.powi(5) / 5.0 - t.powi(7) / 7.0)
+}
+
+#[test]
+fn triangles_shine_to_their_front() {
+    // A square of half size 2 at a height of 2, wound so that it faces down.
+    let light = |triangles: &str| {
+        format!(
+            "light {{ type meshlight name l emit 1 1 1 radiance 2 samples 64 points 4
+             -2 -2 2  2 -2 2  2 2 2  -2 2 2 triangles 2 {triangles} }}
+             camera {{ type pinhole eye 0 -5 1 target 0 0 0 up 0 0 1 fov 40 aspect 1 }}"
+        )
+    };
+    let expected = 0.5 * 2.0 * square_light(2.0, 2.0);
+    micro(&format!("{DIFFUSE}{PLANE}{}", light("0 2 1 0 3 2")), [31, 32], [expected; 3], 4e-3);
+    micro(&format!("{DIFFUSE}{PLANE}{}", light("0 1 2 0 2 3")), [31, 32], [0.0; 3], 0.0);
+}
+
+#[test]
+fn many_small_triangles_shine_like_few_large_ones() {
+    let n = 12;
+    let at = |i: u32| -2.0 + 4.0 * i as f32 / n as f32;
+    let points: String =
+        (0..=n).flat_map(|y| (0..=n).map(move |x| (x, y))).map(|(x, y)| format!("{} {} 2\n", at(x), at(y))).collect();
+    let corner = |x: u32, y: u32| y * (n + 1) + x;
+    let triangles: String = (0..n)
+        .flat_map(|y| (0..n).map(move |x| (x, y)))
+        .map(|(x, y)| {
+            let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
+            format!("{a} {c} {b} {a} {d} {c}\n")
+        })
+        .collect();
+    let light = format!(
+        "light {{ type meshlight name l emit 1 1 1 radiance 2 samples 1024 points {} {points} triangles {} {triangles} }}
+         camera {{ type pinhole eye 0 -5 1 target 0 0 0 up 0 0 1 fov 40 aspect 1 }}",
+        (n + 1) * (n + 1),
+        2 * n * n
+    );
+    micro(&format!("{DIFFUSE}{PLANE}{light}"), [31, 32], [square_light(2.0, 2.0); 3], 4e-3);
+}
+
+#[test]
+fn uber_spreads_its_reflection() {
+    let shader = "shader { name s type uber diff 0 0 0 spec 0.3 0.3 0.3 glossy 0.1 samples 64 }\n";
+    micro(&format!("{WHITE}{shader}{}{PLANE}", cube("white", 100.0)), [31, 32], [0.30055; 3], 0.01);
+}
+
+#[test]
+fn ward_highlights_along_its_axes() {
+    let shader = "shader { name s type ward diff 0 0 0 spec 0.5 0.5 0.5 rough 0.2 0.1 samples 0 }\n";
+    let light = "light { type directional source 1 0 4 target 0 0 0 radius 5 emit 1 1 1 intensity 1 }";
+    micro(&format!("{shader}{PLANE}{light}"), [31, 32], [0.43050; 3], 2e-3);
+}
+
+#[test]
+fn shiny_reflects_in_its_own_colour() {
+    let shader = "shader { name s type shiny diff 0.2 0.4 0.6 refl 0.5 }\n";
+    micro(&format!("{WHITE}{shader}{}{PLANE}", cube("white", 100.0)), [31, 32], [0.1, 0.2, 0.3], 1e-4);
+}
+
+#[test]
+fn paths_gather_light_from_a_white_room() {
+    let gi = "gi { type path samples 64 }\n";
+    micro(&format!("{WHITE}{DIFFUSE}{PLANE}{}{gi}", cube("white", 100.0)), [31, 32], [0.5; 3], 1e-4);
+}
+
+#[test]
+fn fake_light_follows_the_slope() {
+    let gi = "gi { type fake up 0 1 0 sky 1 0 0 ground 0 1 0 }\n";
+    micro(&format!("{DIFFUSE}{PLANE}{gi}"), [31, 32], [0.25, 0.25, 0.0], 1e-5);
+}
+
+#[test]
+fn open_ground_is_bright_unless_a_background_closes_it() {
+    let shader = "shader { name s type amb-occ bright 1 1 1 dark 0 0 0 samples 16 dist 0 }\n";
+    micro(&format!("{shader}{PLANE}"), [31, 32], [1.0; 3], 1e-5);
+    let background = "background { color 0.1 0.2 0.3 }\n";
+    micro(&format!("{shader}{PLANE}{background}"), [31, 32], [0.0; 3], 0.0);
+}
+
+/// A grey room with a point light in it, seen from inside.
+fn room(rest: &str) -> String {
+    format!(
+        "image {{ resolution 64 64 aa 0 0 filter box }}
+         camera {{ type pinhole eye 0 0 5 target 0 5 5 up 0 0 1 fov 40 aspect 1 }}
+         {DIFFUSE}{} {rest}",
+        cube("s", 6.0)
+    )
+}
+
+/// The mean of the 5 × 5 pixels around one: what is random about them cancels.
+#[track_caller]
+fn check_around(text: &str, [x, y]: [u32; 2], expected: f32, tolerance: f32) {
+    let film = part(text, Some([x - 2, y - 2, x + 3, y + 3]));
+    let mean = film.pixels.iter().map(|pixel| pixel[0]).sum::<f32>() / film.pixels.len() as f32;
+    assert!((mean - expected).abs() <= tolerance, "around ({x}, {y}) it is {mean}, expected {expected}");
+}
+
+const LAMP: &str = "light { type point color 1 1 1 power 1000 p 0 0 0.3 }\n";
+/// The lamp's light from two lamps in the same place.
+const LAMPS: &str = "light { type point color 1 1 1 power 500 p 0 0 0.3 }
+    light { type point color 1 1 1 power 500 p 0 0 0.3 }\n";
+
+#[test]
+fn light_bounces_as_often_as_it_may() {
+    let once = room(&format!("{LAMP} trace-depths {{ diff 1 }} gi {{ type path samples 256 }}"));
+    check_around(&once, [31, 32], 0.26868, 2e-3);
+    let cached = "gi { type irr-cache samples 256 tolerance 0.05 spacing 0.05 5 }";
+    check_around(&room(&format!("{LAMP} trace-depths {{ diff 3 }} {cached}")), [31, 32], 0.26868, 2e-3);
+    let paths = "trace-depths { diff 6 } gi { type path samples 256 }";
+    check_around(&room(&format!("{LAMP} {paths}")), [31, 32], 0.3576, 5e-3);
+    check_around(&room(&format!("{LAMPS} {paths}")), [31, 32], 0.3576, 5e-3);
+}
+
+#[test]
+fn virtual_lights_add_what_they_add_in_sunflow() {
+    let gi = "trace-depths { diff 6 } gi { type igi samples 8192 sets 1 c 1000 bias-samples 0 }";
+    check_around(&room(&format!("{LAMP} {gi}")), [31, 32], 0.506, 0.03);
+    check_around(&room(&format!("{LAMPS} {gi}")), [31, 32], 0.338, 0.03);
+}
+
+#[test]
+fn a_glass_ball_gathers_light_below_it() {
+    let scene = format!(
+        "image {{ resolution 64 64 aa 0 0 filter box }}
+         camera {{ type pinhole eye 0 -80 3.5 target 0 0 0 up 0 0 1 fov 40 aspect 1 }}
+         {DIFFUSE} shader {{ name g type glass eta 1.5 color 1 1 1 }}
+         object {{ shader s type generic-mesh name floor points 4 -40 -40 0 40 -40 0 40 40 0 -40 40 0
+                  triangles 2 0 1 2 0 2 3 normals none uvs none }}
+         object {{ shader g type sphere c 0 0 15 r 10 }}
+         light {{ type spherical color 1 1 1 radiance 100 center 0 0 60 radius 2 samples 16 }}
+         photons {{ caustics 200000 kd 100 5 }}"
+    );
+    let pixel = |x: u32, y: u32| part(&scene, Some([x, y, x + 1, y + 1])).pixels[0][0];
+    // 4.70 by tracing rays from the middle of the floor back to the light. (Sunflow's own map blurs it to 2.7.)
+    let bright = pixel(31, 32);
+    assert!((bright - 4.70).abs() < 0.4, "{bright}");
+    let dark = pixel(34, 32);
+    assert!((dark - 0.099).abs() < 0.03, "{dark}");
 }

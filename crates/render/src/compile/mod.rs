@@ -1,24 +1,30 @@
 //! Scene → [`CompiledScene`]: names resolved, transforms baked, textures loaded, hierarchy built, dialect chosen.
 //! Past this point nothing has a name, and nothing is optional.
 
+mod lights;
 mod materials;
 mod objects;
 mod shape;
 mod unsupported;
 
+use std::sync::Arc;
+
 use glam::Vec3;
-use jaspe_scene::description::{Camera as CameraDescription, Filter, Lens, LightKind, View};
+use jaspe_scene::description::{Camera as CameraDescription, Color, Filter, GiKind, Lens, LightKind, View};
 use jaspe_scene::{Diagnostic, Diagnostics, Dialect, Loader, Scene};
 
 use crate::camera::Camera;
+use crate::environment::Environment;
 use crate::filter::FilterSampler;
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, Plan};
 use crate::light::Light;
 use crate::options::{CompileOptions, RenderOptions};
 use crate::report::{Grid, Report, ReportCamera, ReportLight};
 use crate::sampler::SampleKey;
-use crate::sunflow::Sunflow;
+use crate::sunflow::{Caustics, Indirect, Sunflow};
 use crate::wave::{Samples, Seen, Shots, Workspace, World};
+use lights::Lit;
+use materials::Pictures;
 
 /// A scene ready to render: immutable and valid.
 #[derive(Debug)]
@@ -110,8 +116,15 @@ pub fn compile(scene: &Scene, loader: &dyn Loader, options: &CompileOptions) -> 
     let mut diagnostics = Diagnostics::default();
     let dialect = options.dialect.or(scene.dialect.map(|dialect| dialect.value)).unwrap_or_default();
     unsupported::report(scene, &mut diagnostics);
-    let (materials, names) = materials::compile(scene, dialect, loader, options.look, &mut diagnostics);
-    let planned = objects::compile(&shape::Sources { scene, loader }, dialect, &names, &mut diagnostics);
+    let mut pictures = Pictures::new(scene, dialect, loader);
+    let mut materials = materials::compile(scene, &mut pictures, options.look, &mut diagnostics);
+    let lit = match dialect {
+        Dialect::Sunflow => lights::compile(scene, &mut pictures, &mut materials, &mut diagnostics),
+        Dialect::Report => Lit::default(),
+    };
+    let mut plan = Plan::default();
+    let (lights, surroundings) = lit.show(&mut plan);
+    let planned = objects::compile(&shape::Sources { scene, loader }, dialect, plan, &mut materials, &mut diagnostics);
     let Some(camera) = scene.cameras.last() else {
         diagnostics.push(Diagnostic::error(None, "the scene has no camera").hint(
             "add one, for instance `camera { type pinhole eye 0 0 10 target 0 0 0 up 0 1 0 fov 60 aspect 1.333 }`",
@@ -121,14 +134,14 @@ pub fn compile(scene: &Scene, loader: &dyn Loader, options: &CompileOptions) -> 
     let scene_size = scene.image.resolution.map_or(DEFAULT_SIZE, |size| size.value);
     let size = options.resolution.unwrap_or(scene_size);
     let meaning = match dialect {
-        Dialect::Sunflow => sunflow(scene, camera, size, &mut diagnostics),
+        Dialect::Sunflow => sunflow(scene, camera, size, (lights, surroundings), &mut diagnostics),
         Dialect::Report => {
             let camera = report_camera(camera, scene_size[0], size, &mut diagnostics);
             report(scene, camera, planned.plane_normals, &planned.geometry, size)
         }
     };
     let sampling = sampling(scene, dialect, options);
-    let world = World { geometry: planned.geometry, materials };
+    let world = World { geometry: planned.geometry, materials: materials.all };
     let compiled = CompiledScene { size, world, meaning, sampling };
     if compiled.world.geometry.objects.is_empty() && scene.background.is_none() {
         diagnostics.push(Diagnostic::warning(None, "the scene shows nothing: it has no visible object"));
@@ -160,7 +173,13 @@ fn sampling(scene: &Scene, dialect: Dialect, options: &CompileOptions) -> Sampli
     }
 }
 
-fn sunflow(scene: &Scene, camera: &CameraDescription, size: [u32; 2], diagnostics: &mut Diagnostics) -> Meaning {
+fn sunflow(
+    scene: &Scene,
+    camera: &CameraDescription,
+    size: [u32; 2],
+    (lights, surroundings): (Vec<Light>, Option<Arc<Environment>>),
+    diagnostics: &mut Diagnostics,
+) -> Meaning {
     if let Some(shutter) = camera.shutter
         && shutter.value[1] > shutter.value[0]
     {
@@ -169,32 +188,45 @@ fn sunflow(scene: &Scene, camera: &CameraDescription, size: [u32; 2], diagnostic
                 .hint("leave `shutter` out for the same picture without this warning"),
         );
     }
-    let depth = |written: Option<jaspe_scene::Spanned<u32>>| written.map_or(4, |d| d.value).min(255) as u8;
+    let depth = |written: Option<jaspe_scene::Spanned<u32>>, default: u32| {
+        written.map_or(default, |depth| depth.value).min(255) as u8
+    };
+    let depths = &scene.trace_depths;
+    let (indirect, max_diffuse) = indirect(scene, depth(depths.diffuse, 1));
     let rules = Sunflow {
-        lights: scene.lights.iter().filter_map(|light| sunflow_light(&light.kind)).collect(),
+        lights,
+        surroundings,
         background: scene.background.as_ref().map(|background| Vec3::from_array(background.color.linear())),
-        max_reflection: depth(scene.trace_depths.reflection),
-        max_refraction: depth(scene.trace_depths.refraction),
+        indirect,
+        caustics: scene.caustics.map(|c| Caustics::Wanted { emit: c.emit, gather: c.gather, radius: c.radius }),
+        max_reflection: depth(depths.reflection, 4),
+        max_refraction: depth(depths.refraction, 4),
+        max_diffuse,
     };
     let filter = FilterSampler::new(scene.image.filter.map_or(Filter::Box, |filter| filter.value));
     let jitter = scene.image.jitter.is_some_and(|jitter| jitter.value);
     Meaning::Sunflow { rules, camera: Camera::new(camera, size), filter, jitter }
 }
 
-/// A light in Sunflow's meaning; `None` for one that shines nowhere.
-fn sunflow_light(kind: &LightKind) -> Option<Light> {
-    match kind {
-        LightKind::Point { color, power, position } => Some(Light::Point {
-            position: Vec3::from_array(*position),
-            power: Vec3::from_array(color.linear()) * *power,
-        }),
-        LightKind::Directional { source, target, radius, emit, intensity } => {
-            let source = Vec3::from_array(*source);
-            let direction = (Vec3::from_array(*target) - source).try_normalize()?;
-            let irradiance = Vec3::from_array(emit.linear()) * *intensity;
-            Some(Light::Directional { source, direction, radius: *radius, irradiance })
+/// How indirect light is found, and how often paths bounce for it.
+fn indirect(scene: &Scene, depth: u8) -> (Indirect, u8) {
+    let Some(gi) = &scene.gi else { return (Indirect::None, depth) };
+    let linear = |color: &Color| Vec3::from_array(color.linear());
+    match &gi.kind {
+        GiKind::Path { samples } => (Indirect::Paths { samples: *samples }, depth),
+        // Sunflow: without a map there is one bounce (R6), with it there are as many as photons make.
+        GiKind::IrradianceCache { samples, global, .. } => {
+            (Indirect::Paths { samples: *samples }, if global.is_some() { depth } else { depth.min(1) })
         }
-        _ => None,
+        &GiKind::Instant { samples, sets, bias, .. } => (Indirect::Instant { samples, sets, bias }, depth),
+        GiKind::AmbientOcclusion { bright, dark, samples, max_distance } => {
+            let (dark, bright) = (linear(dark), linear(bright));
+            (Indirect::Occlusion { dark, bright, samples: *samples, distance: *max_distance }, depth)
+        }
+        GiKind::Fake { up, sky, ground } => {
+            let up = Vec3::from_array(*up).normalize_or(Vec3::Y);
+            (Indirect::Slope { up, sky: linear(sky), ground: linear(ground) }, depth)
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use jaspe_scene::description::{
 };
 use jaspe_scene::{Diagnostic, Diagnostics, Dialect, Span};
 
-use super::materials::Names;
+use super::materials::Materials;
 use super::shape::Sources;
 use crate::affine;
 use crate::geometry::{Geometry, MeshShape, PerVertex, Placement, Plan};
@@ -24,11 +24,12 @@ pub(super) struct Planned {
 pub(super) fn compile(
     sources: &Sources<'_>,
     dialect: Dialect,
-    names: &Names<'_>,
+    mut plan: Plan,
+    materials: &mut Materials<'_>,
     diagnostics: &mut Diagnostics,
 ) -> Planned {
     let scene = sources.scene;
-    let mut compiler = Compiler { dialect, names, diagnostics, missing: HashSet::new() };
+    let mut compiler = Compiler { dialect, materials, diagnostics, missing: HashSet::new() };
     let mut appearances: HashMap<&str, Vec<&Instance>> = HashMap::new();
     let known: HashSet<&str> = scene.objects.iter().filter_map(|o| o.name.as_ref().map(|n| n.value.as_str())).collect();
     for instance in &scene.instances {
@@ -38,7 +39,6 @@ pub(super) fn compile(
             compiler.unknown_geometry(&instance.geometry);
         }
     }
-    let mut plan = Plan::default();
     let mut plane_normals = Vec::new();
     let mut taken = HashSet::new();
     for object in &scene.objects {
@@ -50,11 +50,21 @@ pub(super) fn compile(
         }
         let mut places = Vec::new();
         if object.visible {
-            places.extend(compiler.place(object.transform.as_ref(), &object.shaders, object.span, &object.geometry));
+            places.extend(compiler.place(
+                object.transform.as_ref(),
+                [&object.shaders, &object.modifiers],
+                object.span,
+                &object.geometry,
+            ));
         }
         let instances = name.filter(|_| !repeated).and_then(|name| appearances.get(name));
         for instance in instances.into_iter().flatten() {
-            let place = compiler.place(instance.transform.as_ref(), &instance.shaders, instance.span, &object.geometry);
+            let place = compiler.place(
+                instance.transform.as_ref(),
+                [&instance.shaders, &instance.modifiers],
+                instance.span,
+                &object.geometry,
+            );
             places.extend(place);
         }
         if !sources.add(&mut plan, &object.geometry, &places, compiler.diagnostics) {
@@ -88,24 +98,27 @@ fn add(plan: &mut Plan, object: &Object, places: &[Placement], dialect: Dialect,
     }
 }
 
-struct Compiler<'a> {
+struct Compiler<'a, 'm> {
     dialect: Dialect,
-    names: &'a Names<'a>,
+    materials: &'a mut Materials<'m>,
     diagnostics: &'a mut Diagnostics,
-    /// Shader names that were reported already.
+    /// Names of shaders and modifiers that were reported already.
     missing: HashSet<String>,
 }
 
-impl Compiler<'_> {
+impl Compiler<'_, '_> {
     /// Where an appearance stands, unless its transform cannot be inverted.
     fn place(
         &mut self,
         transform: Option<&Transform>,
-        shaders: &[Name],
+        [shaders, modifiers]: [&[Name]; 2],
         span: Span,
         geometry: &Written,
     ) -> Option<Placement> {
-        let materials = self.materials(shaders, span);
+        let mut materials = self.materials(shaders, span);
+        if self.dialect == Dialect::Sunflow {
+            materials.iter_mut().zip(modifiers).for_each(|(material, name)| self.modify(material, name));
+        }
         let base = match geometry {
             Written::Sphere { center, radius } => {
                 DMat4::from_translation(Vec3::from_array(*center).as_dvec3())
@@ -132,7 +145,7 @@ impl Compiler<'_> {
     /// The materials of an appearance's shaders, in order.
     fn materials(&mut self, shaders: &[Name], span: Span) -> Vec<u32> {
         if shaders.is_empty() {
-            let anything = self.names.get("");
+            let anything = self.materials.get("");
             if anything.is_none() {
                 self.diagnostics.push(
                     Diagnostic::warning(span, "this object has no shader: it will be black")
@@ -145,7 +158,7 @@ impl Compiler<'_> {
     }
 
     fn material(&mut self, name: &Name) -> u32 {
-        if let Some(material) = self.names.get(&name.value) {
+        if let Some(material) = self.materials.get(&name.value) {
             return material;
         }
         if self.missing.insert(name.value.clone()) {
@@ -153,12 +166,26 @@ impl Compiler<'_> {
                 name.span,
                 format!("there is no shader `{}`: the object will be black", name.value),
             );
-            if let Some(near) = jaspe_scene::nearest(&name.value, self.names.known()) {
+            if let Some(near) = jaspe_scene::nearest(&name.value, self.materials.known()) {
                 diagnostic = diagnostic.hint(format!("did you mean `{near}`?"));
             }
             self.diagnostics.push(diagnostic);
         }
         BLACK
+    }
+
+    /// Turns the normals of a material.
+    fn modify(&mut self, material: &mut u32, name: &Name) {
+        if let Some(modified) = self.materials.modify(*material, &name.value) {
+            *material = modified;
+        } else if self.missing.insert(format!("modifier {}", name.value)) {
+            let text = format!("there is no modifier `{}`: the surface stays as it is", name.value);
+            let mut diagnostic = Diagnostic::warning(name.span, text);
+            if let Some(near) = jaspe_scene::nearest(&name.value, self.materials.known_modifiers()) {
+                diagnostic = diagnostic.hint(format!("did you mean `{near}`?"));
+            }
+            self.diagnostics.push(diagnostic);
+        }
     }
 
     fn unknown_geometry(&mut self, name: &Name) {

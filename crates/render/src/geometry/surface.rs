@@ -158,6 +158,39 @@ impl Geometry {
         }
     }
 
+    /// The corners of the triangle that was hit, in the world.
+    pub fn triangle(&self, hit: &Hit) -> Option<[Vec3; 3]> {
+        let object = &self.objects[hit.id.object as usize];
+        match object.shape {
+            Shape::Mesh(index) => Some(self.meshes[index as usize].triangle_points(hit.id.index as usize)),
+            Shape::MeshInstance(index) => {
+                let corners = self.meshes[index as usize].triangle_points(hit.id.index as usize);
+                Some(corners.map(|corner| object.world_from_object.point(corner)))
+            }
+            _ => None,
+        }
+    }
+
+    /// The direction in which the second texture coordinate grows, in the world; of spheres that of the parallels
+    /// (format reference, §3.13). `None` where the shape has none.
+    pub fn tangent(&self, hit: &Hit, point: Vec3) -> Option<Vec3> {
+        let object = &self.objects[hit.id.object as usize];
+        match object.shape {
+            Shape::Sphere { .. } | Shape::Ellipsoid => {
+                let local = object.object_from_world.point(point);
+                Some(object.world_from_object.vector(Vec3::new(-local.y, local.x, 0.0)))
+            }
+            Shape::Plane(_) => None,
+            Shape::Mesh(index) | Shape::MeshInstance(index) => {
+                let [uv0, uv1, uv2] = self.meshes[index as usize].triangle_uvs(hit.id.index as usize)?;
+                let [v0, v1, v2] = self.triangle(hit)?;
+                let (d1, d2) = (uv0 - uv2, uv1 - uv2);
+                let area = d1.x * d2.y - d1.y * d2.x;
+                (area != 0.0).then(|| ((v1 - v2) * d1.x - (v0 - v2) * d2.x) / area)
+            }
+        }
+    }
+
     /// The material at every hit; `none` where there is no hit.
     pub fn materials(&self, hits: &Hits, none: u32, materials: &mut Vec<u32>) {
         materials.clear();

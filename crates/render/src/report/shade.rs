@@ -3,10 +3,10 @@
 
 use glam::Vec3;
 
-use super::{Gathered, MAX_BOUNCES, Report, ReportLight, T_MIN, UNLIT, triangle};
+use super::{Gathered, MAX_BOUNCES, Report, ReportLight, T_MIN, UNLIT};
 use crate::geometry::simd::{self, Simd};
 use crate::geometry::{Geometry, Hit, Ids, Ray, RayView, Rows, Scratch, Shape};
-use crate::material::{Material, Response};
+use crate::material::{Coat, Gloss, Material, Response};
 use crate::math;
 use crate::wave::{Batch, Path, Queues, RayKind};
 
@@ -114,7 +114,7 @@ impl Report {
         let Room { position, normal, colors, ids, sight, direct, blocked, scratch, .. } = room;
         let (count, material) = (batch.members.len(), batch.material);
         let lobe = match material.response {
-            Response::Phong { specular, power, .. } => Some((specular, power)),
+            Response::Matte(Coat::Phong { specular: Gloss::Color(specular), power, .. }) => Some((specular, power)),
             _ => None,
         };
         direct.clear();
@@ -260,7 +260,7 @@ impl Share {
             Response::Mirror => (1.0, 0.0, 0.0),
             Response::Glass { eta, .. } => (0.0, 1.0, eta),
             // The original never set an index for the one material of these that refracts.
-            Response::Procedural { reflection, transmission } => (reflection, transmission, 0.0),
+            Response::Matte(Coat::Touch { reflection, transmission }) => (reflection, transmission, 0.0),
             _ => (0.0, 0.0, 0.0),
         };
         Share { reflected, refracted, eta, gain: 1.0 / (1.0 + reflected + refracted) }
@@ -269,7 +269,7 @@ impl Share {
 
 /// The normal of a triangle towards the ray, as long as its edges make it; of other shapes their own.
 fn facing_normal(geometry: &Geometry, ray: &Ray, hit: &Hit) -> Vec3 {
-    match triangle(geometry, hit) {
+    match geometry.triangle(hit) {
         Some([a, b, c]) => {
             let normal = (b - a).cross(c - a);
             if normal.dot(ray.direction) > 0.0 { -normal } else { normal }
@@ -309,7 +309,7 @@ fn spawn(path: &Path, ray: Ray, share: f32, kind: RayKind, queues: &mut Queues<G
     let node = queues.nodes.len() as u32;
     queues.nodes.push(Gathered { parent: path.node, share, ..Gathered::default() });
     let depth = if kind == RayKind::Refraction { path.depth.refracted() } else { path.depth.reflected() };
-    queues.next.push(ray, Path { weight: Vec3::ONE, node, kind, depth });
+    queues.next.push(ray, Path { weight: Vec3::ONE, node, index: path.index, kind, depth });
 }
 
 /// The refracted direction. (Snell's law has `m |h|` where the original has `m`.)

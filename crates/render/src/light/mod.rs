@@ -1,0 +1,136 @@
+//! Lights of Sunflow's dialect: what they send to a point (format reference, §3.7).
+
+mod cornell;
+mod emit;
+mod sphere;
+mod triangle;
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::environment::Environment;
+use crate::sampler::SampleKey;
+pub(crate) use cornell::Ceiling;
+pub(crate) use sphere::Ball;
+pub(crate) use triangle::Shining;
+
+/// A light in the world.
+#[derive(Debug, Clone)]
+pub(crate) enum Light {
+    /// Radiant power, spread evenly over all directions.
+    Point { position: Vec3, power: Vec3 },
+    /// A parallel beam; `irradiance` falls on a surface that faces it.
+    Directional { source: Vec3, direction: Vec3, radius: f32, irradiance: Vec3 },
+    /// A parallel beam from infinitely far away, which `towards` points to.
+    Sun { towards: Vec3, irradiance: Vec3 },
+    /// A shining sphere.
+    Ball(Ball),
+    /// Shining triangles.
+    Triangles { triangles: Arc<[Shining]>, samples: u32 },
+    /// The light in the ceiling of a Cornell box.
+    Ceiling(Ceiling),
+    /// The surroundings. With `lock`, all points look at the same directions.
+    Surroundings { environment: Arc<Environment>, samples: u32, low_samples: u32, lock: bool },
+}
+
+/// A point that asks for light.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Receiver {
+    pub point: Vec3,
+    /// For shading, of unit length.
+    pub normal: Vec3,
+    /// The light comes by way of another matte surface: one sample will do.
+    pub indirect: bool,
+    pub key: SampleKey,
+    /// The sample dimension of the first light; the others have those that follow.
+    pub dimension: u32,
+}
+
+/// Light that arrives at a point.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Arrival {
+    /// Unit vector towards the light.
+    pub direction: Vec3,
+    /// How far the light is; what blocks it is closer.
+    pub distance: f32,
+    /// Irradiance on a surface that faces it: the sample's part of what the whole light gives.
+    pub irradiance: Vec3,
+}
+
+/// Rays towards a shape that shines end so much before it that they do not meet it.
+const BEFORE: f32 = 0.9999;
+/// Triangles of one light up to which every one gets its own samples; of more, samples choose.
+const EACH: usize = 16;
+/// Samples for all triangles of a light that has more.
+const CHOSEN: u32 = 64;
+
+impl Light {
+    /// What arrives at a point, if nothing is in the way: light `number` of the scene, sample by sample.
+    #[inline]
+    pub fn arrive(&self, number: u32, at: &Receiver, each: &mut impl FnMut(Arrival)) {
+        match self {
+            Light::Point { position, power } => {
+                let to = *position - at.point;
+                let distance2 = to.length_squared();
+                if distance2 > 0.0 {
+                    let distance = distance2.sqrt();
+                    let irradiance = *power * (1.0 / (4.0 * std::f32::consts::PI * distance2));
+                    each(Arrival { direction: to / distance, distance, irradiance });
+                }
+            }
+            Light::Directional { source, direction, radius, irradiance } => {
+                let along = (at.point - *source).dot(*direction);
+                let off = at.point - *source - *direction * along;
+                if along >= 0.0 && off.length_squared() <= radius * radius {
+                    each(Arrival { direction: -*direction, distance: along, irradiance: *irradiance });
+                }
+            }
+            Light::Sun { towards, irradiance } => {
+                each(Arrival { direction: *towards, distance: f32::INFINITY, irradiance: *irradiance });
+            }
+            Light::Ball(ball) => spread(at, number, ball.samples, |xi, n| ball.arrive(at, xi, n), each),
+            Light::Ceiling(light) => spread(at, number, light.samples, |xi, n| light.arrive(at, xi, n), each),
+            Light::Triangles { triangles, samples } if triangles.len() <= EACH => {
+                for seen in triangles.iter().filter_map(|triangle| triangle.seen_from(at)) {
+                    spread(at, number, *samples, |xi, n| seen.arrive(at, xi, n), each);
+                }
+            }
+            Light::Triangles { triangles, samples } => {
+                let samples = samples.saturating_mul(triangles.len() as u32).min((*samples).max(CHOSEN));
+                spread(at, number, samples, |xi, n| triangle::choose(triangles, at, xi, n), each);
+            }
+            &Light::Surroundings { ref environment, samples, low_samples, lock } => {
+                let look = |xi: [f32; 2], n: f32| {
+                    let (direction, radiance) = environment.sample(xi)?;
+                    Some(Arrival { direction, distance: f32::INFINITY, irradiance: radiance / n })
+                };
+                if lock {
+                    let count = if at.indirect { low_samples } else { samples };
+                    for i in 0..count {
+                        let xi = SampleKey::shared(i, u64::from(number) + 1).pair(0);
+                        look(xi, count as f32).into_iter().for_each(&mut *each);
+                    }
+                } else {
+                    spread(at, number, samples, look, each);
+                }
+            }
+        }
+    }
+}
+
+/// Samples of a light that is seen under an angle; `look` gets two uniform numbers and the number of samples.
+#[inline]
+fn spread(
+    at: &Receiver,
+    number: u32,
+    samples: u32,
+    look: impl Fn([f32; 2], f32) -> Option<Arrival>,
+    each: &mut impl FnMut(Arrival),
+) {
+    let count = if at.indirect { samples.min(1) } else { samples };
+    for i in 0..count {
+        let xi = at.key.nth(i, count).pair(at.dimension + number);
+        look(xi, count as f32).into_iter().for_each(&mut *each);
+    }
+}

@@ -1,0 +1,149 @@
+//! The caustic photon map: a balanced tree of photons, and the light that they make of a point ([Jensen 2001],
+//! "Realistic Image Synthesis Using Photon Mapping", ch. 6 and 7).
+
+use glam::Vec3;
+
+use super::Sunflow;
+use super::photons::{self, Keep, Photon};
+use crate::wave::World;
+
+/// The photons as an implicit balanced tree: the middle of a range splits it, the halves on its sides are its children.
+#[derive(Debug, Clone)]
+pub(crate) struct CausticMap {
+    photons: Vec<Photon>,
+    /// Along which the middle of a range splits it, by the place of the middle.
+    axes: Vec<u8>,
+    gather: usize,
+    radius: f32,
+}
+
+/// How sharply near photons count more: Jensen's constant k.
+const CONE: f32 = 1.1;
+/// Fewer photons make no light.
+const LEAST: usize = 8;
+/// Photons that lie off the plane of the surface by more of the radius than this belong to another surface.
+const FLAT: f32 = 0.1;
+/// Most photons that one estimate takes.
+const MOST: usize = 4096;
+
+impl CausticMap {
+    /// Sends photons, and keeps what comes by way of mirrors and glass; `None` if nothing does.
+    pub fn send(rules: &Sunflow, world: &World, emit: u32, gather: u32, radius: f32) -> Option<Self> {
+        let mut photons = photons::send(rules, world, Keep::Caustics, 0, emit);
+        let brightest = photons.iter().map(|photon| photon.power.max_element()).fold(0.0, f32::max);
+        let gather = (gather as usize).clamp(1, MOST);
+        let radius = radius.min(1.4 * (brightest * gather as f32).sqrt());
+        let mut axes = vec![0; photons.len()];
+        split(&mut photons, &mut axes);
+        (!photons.is_empty() && radius > 0.0).then_some(CausticMap { photons, axes, gather, radius })
+    }
+
+    /// Irradiance at a point of a surface.
+    pub fn irradiance(&self, point: Vec3, normal: Vec3, nearest: &mut Nearest) -> Vec3 {
+        nearest.found.clear();
+        nearest.reach = self.radius * self.radius;
+        self.search(point, 0, self.photons.len(), nearest);
+        let found = &nearest.found;
+        if found.len() < LEAST {
+            return Vec3::ZERO;
+        }
+        let radius2 = if found.len() < self.gather { self.radius * self.radius } else { found[0].0 };
+        let radius = radius2.sqrt();
+        // In the order of the tree, so that the sum does not depend on the order of the search.
+        nearest.order.clear();
+        nearest.order.extend(found.iter().map(|&(distance2, index)| (index, distance2)));
+        nearest.order.sort_unstable_by_key(|&(index, _)| index);
+        let mut total = Vec3::ZERO;
+        for &(index, distance2) in &nearest.order {
+            let photon = &self.photons[index as usize];
+            let flat = (photon.point - point).dot(normal).abs() < FLAT * radius;
+            if flat && photon.direction.dot(normal) < -0.001 {
+                total += photon.power * (1.0 - distance2.sqrt() / (CONE * radius));
+            }
+        }
+        total / ((1.0 - 2.0 / (3.0 * CONE)) * std::f32::consts::PI * radius2)
+    }
+
+    /// Looks for the nearest photons among those from `first` to `end`.
+    fn search(&self, point: Vec3, first: usize, end: usize, nearest: &mut Nearest) {
+        if first == end {
+            return;
+        }
+        let middle = first + (end - first) / 2;
+        let photon = &self.photons[middle];
+        let axis = usize::from(self.axes[middle]);
+        let side = point[axis] - photon.point[axis];
+        let halves = [(first, middle), (middle + 1, end)];
+        let (near, far) = if side < 0.0 { (halves[0], halves[1]) } else { (halves[1], halves[0]) };
+        self.search(point, near.0, near.1, nearest);
+        let distance2 = photon.point.distance_squared(point);
+        if distance2 < nearest.reach {
+            nearest.add(distance2, middle as u32, self.gather);
+        }
+        if side * side < nearest.reach {
+            self.search(point, far.0, far.1, nearest);
+        }
+    }
+}
+
+/// Sorts photons into a balanced tree, split along the longest side of each range.
+fn split(photons: &mut [Photon], axes: &mut [u8]) {
+    if photons.is_empty() {
+        return;
+    }
+    let (mut min, mut max) = (photons[0].point, photons[0].point);
+    for photon in photons.iter() {
+        (min, max) = (min.min(photon.point), max.max(photon.point));
+    }
+    let extent = max - min;
+    let axis = if extent.x >= extent.y && extent.x >= extent.z { 0 } else { 1 + usize::from(extent.z > extent.y) };
+    let middle = photons.len() / 2;
+    photons.select_nth_unstable_by(middle, |a, b| a.point[axis].total_cmp(&b.point[axis]));
+    axes[middle] = axis as u8;
+    let ((left, right), (left_axes, right_axes)) = (photons.split_at_mut(middle), axes.split_at_mut(middle));
+    rayon::join(|| split(left, left_axes), || split(&mut right[1..], &mut right_axes[1..]));
+}
+
+/// The nearest photons that a search has found, and room for them.
+#[derive(Debug, Default)]
+pub(crate) struct Nearest {
+    /// A heap, the farthest first: squared distance and photon.
+    found: Vec<(f32, u32)>,
+    order: Vec<(u32, f32)>,
+    /// Squared distance beyond which nothing is looked for.
+    reach: f32,
+}
+
+impl Nearest {
+    fn add(&mut self, distance2: f32, index: u32, most: usize) {
+        let found = &mut self.found;
+        if found.len() < most {
+            found.push((distance2, index));
+            let mut at = found.len() - 1;
+            while at > 0 && found[(at - 1) / 2].0 < found[at].0 {
+                found.swap(at, (at - 1) / 2);
+                at = (at - 1) / 2;
+            }
+        } else {
+            found[0] = (distance2, index);
+            let mut at = 0;
+            loop {
+                let (left, right) = (2 * at + 1, 2 * at + 2);
+                let mut farthest = at;
+                for child in [left, right] {
+                    if child < found.len() && found[child].0 > found[farthest].0 {
+                        farthest = child;
+                    }
+                }
+                if farthest == at {
+                    break;
+                }
+                found.swap(at, farthest);
+                at = farthest;
+            }
+        }
+        if found.len() == most {
+            self.reach = found[0].0;
+        }
+    }
+}

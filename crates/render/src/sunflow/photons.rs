@@ -1,0 +1,242 @@
+//! Light sent out from the lights ([Jensen 2001] "Realistic Image Synthesis Using Photon Mapping"): photons for
+//! caustics, and for virtual lights (format reference, §3.15).
+//!
+//! Photons travel in the same waves as the light that the camera sees, by rules of their own.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::point::{Point, Which};
+use super::{Batch, Coat, Path, Queues, Response, Room, Rules, Sunflow};
+use crate::geometry::{Geometry, Hits, Rays};
+use crate::light::Light;
+use crate::material::luminance;
+use crate::math;
+use crate::sampler::SampleKey;
+use crate::wave::{RayKind, Samples, Workspace, World};
+
+/// A photon where it came to a matte surface.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Photon {
+    pub point: Vec3,
+    /// Of the surface, on the side that the photon came from.
+    pub normal: Vec3,
+    /// In which it travelled.
+    pub direction: Vec3,
+    pub power: Vec3,
+    /// Which of the photons that were sent.
+    number: u32,
+}
+
+/// Which photons are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Keep {
+    /// Those that come to their first matte surface by way of mirrors or glass.
+    Caustics,
+    /// All that come to a matte surface.
+    All,
+}
+
+/// Photons sent at a time.
+const CHUNK: u32 = 1024;
+
+/// Sends `count` photons of the lights, numbered from `first` on, and returns those that are kept. The same photons for
+/// any number of threads.
+pub(crate) fn send(rules: &Sunflow, world: &World, keep: Keep, first: u32, count: u32) -> Vec<Photon> {
+    let sender = Sender::new(rules, keep, count);
+    if sender.total <= 0.0 {
+        return Vec::new();
+    }
+    let starts: Vec<u32> = (0..count).step_by(CHUNK as usize).collect();
+    let chunks: Vec<Vec<Photon>> = starts
+        .into_par_iter()
+        .map_init(Box::<Workspace<Sender<'_>>>::default, |workspace, start| {
+            let mut samples = sender.emit(first + start..first + count.min(start + CHUNK));
+            workspace.trace(world, &sender, &mut samples, false);
+            let mut kept = std::mem::take(&mut workspace.room.kept);
+            if keep == Keep::All {
+                share_last(&mut kept, first + start);
+            }
+            kept
+        })
+        .collect();
+    chunks.concat()
+}
+
+/// Gives all that is kept of one photon the power that it had in the end. Sunflow: a photon's power is one object, which
+/// every bounce changes (R17).
+fn share_last(kept: &mut [Photon], first: u32) {
+    let mut last = vec![Vec3::ZERO; CHUNK as usize];
+    kept.iter().for_each(|photon| last[(photon.number - first) as usize] = photon.power);
+    kept.iter_mut().for_each(|photon| photon.power = last[(photon.number - first) as usize]);
+}
+
+/// The rules by which photons travel.
+struct Sender<'a> {
+    rules: &'a Sunflow,
+    keep: Keep,
+    /// How many are sent altogether.
+    count: f32,
+    /// By light: the sum of what lights are chosen by, up to this one.
+    below: Vec<f32>,
+    total: f32,
+}
+
+/// One thread's room.
+#[derive(Default)]
+pub(crate) struct PhotonRoom {
+    shading: Room,
+    kept: Vec<Photon>,
+}
+
+impl<'a> Sender<'a> {
+    fn new(rules: &'a Sunflow, keep: Keep, count: u32) -> Self {
+        let mut total = 0.0;
+        let mut add = |light: &Light| {
+            let share = luminance(light.power());
+            total += if share.is_finite() { share } else { 0.0 };
+            total
+        };
+        let below = rules.lights.iter().map(&mut add).collect();
+        Sender { rules, keep, count: count as f32, below, total }
+    }
+
+    /// The light of a photon, and its two uniform numbers for a place on the light.
+    fn light(&self, key: SampleKey) -> (&'a Light, [f32; 2]) {
+        let [choice, v] = key.pair(0);
+        let at = choice * self.total;
+        let light = self.below.partition_point(|&below| below <= at).min(self.below.len() - 1);
+        let first = if light == 0 { 0.0 } else { self.below[light - 1] };
+        let u = ((at - first) / (self.below[light] - first)).clamp(0.0, 1.0);
+        (&self.rules.lights[light], [u, v])
+    }
+
+    fn emit(&self, indices: std::ops::Range<u32>) -> Samples {
+        let mut samples = Samples::default();
+        samples.resize(indices.len());
+        for (i, index) in indices.enumerate() {
+            let key = SampleKey::shared(index, 0);
+            let (light, place) = self.light(key);
+            samples.set(i, light.emit(place, key.pair(1), self.keep == Keep::All), key, 1.0);
+        }
+        samples
+    }
+
+    /// A photon meets a surface: it is kept, and goes on, or is lost. One number decides, as the surface's colours say.
+    fn meet(&self, batch: &Batch<'_>, point: &Point<'_>, kept: &mut Vec<Photon>, queues: &mut Queues<()>) {
+        let depth = point.path.depth;
+        let [choice, other] = point.key.pair(point.dimension(Which::Choice));
+        let response = &batch.material.response;
+        if let Response::Matte(_) | Response::Look(_) = response {
+            let blurred = depth.diffuse > 0;
+            let wanted = match self.keep {
+                Keep::Caustics => !blurred && depth.total() > 0,
+                Keep::All => true,
+            };
+            if wanted {
+                // Sunflow: a photon carries what its light has, whatever the chance was to be chosen (R16).
+                let (light, _) = self.light(point.key);
+                let power = point.path.weight * light.photon_power() / self.count;
+                let normal = point.surface.normal;
+                let number = point.key.index;
+                kept.push(Photon { point: point.front, normal, direction: point.direction, power, number });
+            }
+        }
+        let mut below = 0.0;
+        // Whether the choice falls to a way on whose colour is this, and what the photon's power becomes.
+        let mut chosen = |color: Vec3| {
+            let (first, share) = (below, color.element_sum() / 3.0);
+            below += share;
+            (choice >= first && choice < below).then(|| color / share)
+        };
+        let limits = self.rules;
+        match response {
+            Response::Matte(coat) => {
+                if let Some(tint) = chosen(point.color) {
+                    if self.keep == Keep::All && depth.diffuse < limits.max_diffuse {
+                        let turn = (choice / below).clamp(0.0, 1.0);
+                        let direction = math::cosine_hemisphere(point.surface.normal, [turn, other]);
+                        self.go(point, point.front, direction, tint, RayKind::Gather, queues);
+                    }
+                    return;
+                }
+                let Some(tint) = chosen(point.gloss) else { return };
+                let direction = match coat {
+                    Coat::Mirror { .. } | Coat::Ward { .. } | Coat::None | Coat::Touch { .. } => point.mirrored(),
+                    Coat::Phong { power, .. } => {
+                        let cosine = math::pow(other, 1.0 / (power + 1.0));
+                        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+                        math::around(point.mirrored(), (choice / below).clamp(0.0, 1.0), sine, cosine)
+                    }
+                };
+                if depth.reflection < limits.max_reflection && direction.dot(point.surface.geometric) > 0.0 {
+                    self.go(point, point.front, direction, tint, RayKind::Reflection, queues);
+                }
+            }
+            Response::Mirror => {
+                if let Some(tint) = chosen(point.color)
+                    && depth.reflection < limits.max_reflection
+                {
+                    self.go(point, point.front, point.mirrored(), tint, RayKind::Reflection, queues);
+                }
+            }
+            Response::Glass { eta, absorption } => {
+                let head_on = ((1.0 - eta) / (1.0 + eta)).powi(2);
+                if let Some(tint) = chosen(point.color * head_on) {
+                    if !point.inside && depth.reflection < limits.max_reflection {
+                        self.go(point, point.front, point.mirrored(), tint, RayKind::Reflection, queues);
+                    }
+                } else if let Some(mut tint) = chosen(point.color * (1.0 - head_on))
+                    && depth.refraction < limits.max_refraction
+                {
+                    if point.inside {
+                        tint *= super::specular::transmittance(*absorption, point.hit.t);
+                    }
+                    let (_, bent) = point.refract(*eta);
+                    let (origin, direction) = match bent {
+                        Some(bent) => (point.back(), bent),
+                        None => (point.front, point.mirrored()),
+                    };
+                    self.go(point, origin, direction, tint, RayKind::Refraction, queues);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn go(&self, point: &Point<'_>, origin: Vec3, direction: Vec3, tint: Vec3, kind: RayKind, queues: &mut Queues<()>) {
+        let depth = match kind {
+            RayKind::Gather => point.path.depth.diffused(),
+            RayKind::Refraction => point.path.depth.refracted(),
+            _ => point.path.depth.reflected(),
+        };
+        let weight = point.path.weight * tint;
+        if weight.is_finite() {
+            queues.next.push(point.leave(origin, direction), Path { weight, kind, depth, ..*point.path });
+        }
+    }
+}
+
+impl Rules for Sender<'_> {
+    type Node = ();
+    type Room = PhotonRoom;
+    const T_MIN: f32 = 0.0;
+
+    fn shade(&self, batch: &Batch<'_>, room: &mut PhotonRoom, queues: &mut Queues<()>) {
+        room.shading.prepare(batch);
+        for i in 0..batch.members.len() {
+            let point = room.shading.point(batch, i);
+            self.meet(batch, &point, &mut room.kept, queues);
+        }
+    }
+
+    fn miss(&self, _: &Path, _: Vec3, (): &mut ()) -> bool {
+        false
+    }
+
+    fn seen(&self, _: &Geometry, _: &Rays, _: &Hits, _: usize) -> Vec3 {
+        Vec3::ZERO
+    }
+
+    fn resolve(&self, _: &mut [()], _: usize, _: &mut Vec<Vec3>) {}
+}

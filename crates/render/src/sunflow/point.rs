@@ -1,0 +1,134 @@
+//! Hits, ready to be shaded.
+
+use glam::Vec3;
+
+use crate::geometry::{Hit, Id, Ids, Ray, Rows, Surface, Surfaces};
+use crate::math::{self, offset};
+use crate::modifier::Place;
+use crate::sampler::SampleKey;
+use crate::wave::{Batch, Path};
+
+/// A hit, ready to be shaded: everything faces the ray.
+pub(super) struct Point<'a> {
+    pub path: &'a Path,
+    /// Of the ray that arrived.
+    pub direction: Vec3,
+    pub key: SampleKey,
+    pub hit: Hit,
+    pub surface: Surface,
+    /// The ray came from the inside of the shape.
+    pub inside: bool,
+    /// Cosine between the normal and the way back, 0 to 1.
+    pub cosine: f32,
+    pub color: Vec3,
+    /// The colour of the coat.
+    pub gloss: Vec3,
+    /// Where rays to the front side start.
+    pub front: Vec3,
+    /// A primitive that a ray leaving this point cannot meet again: flat ones.
+    pub skip: Id,
+}
+
+/// The hits of a batch in rows: see [`Point`] for what they mean.
+#[derive(Default)]
+pub(super) struct Points {
+    pub surfaces: Surfaces,
+    front: Rows,
+    cosine: Vec<f32>,
+    inside: Vec<bool>,
+    skip: Ids,
+}
+
+impl Point<'_> {
+    pub fn mirrored(&self) -> Vec3 {
+        (self.direction + self.surface.normal * (2.0 * self.cosine)).normalize_or(self.surface.normal)
+    }
+
+    /// Where rays to the back side start.
+    pub fn back(&self) -> Vec3 {
+        offset(self.surface.point, -self.surface.geometric)
+    }
+
+    /// A ray from here to wherever it goes.
+    pub fn leave(&self, origin: Vec3, direction: Vec3) -> Ray {
+        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: self.skip }
+    }
+
+    /// A pair of sample dimensions that belongs to this bounce alone.
+    pub fn dimension(&self, which: Which) -> u32 {
+        2 + 1024 * self.path.depth.total() + which as u32
+    }
+
+    /// The axes of the surface: along it, along it, and the normal (format reference, §3.13).
+    pub fn frame(&self, batch: &Batch<'_>) -> [Vec3; 3] {
+        let along = batch.geometry.tangent(&self.hit, self.surface.point);
+        // After a modifier, any axes will do.
+        math::frame(self.surface.normal, along.filter(|_| batch.material.modifier.is_none()))
+    }
+}
+
+/// What a pair of sample dimensions is for.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Which {
+    Glossy = 0,
+    Gather = 1,
+    Choice = 2,
+    /// The first light; the others follow.
+    Lights = 3,
+}
+
+impl Points {
+    /// Surfaces of a batch, turned towards the rays.
+    pub fn locate(&mut self, batch: &Batch<'_>) {
+        let count = batch.members.len();
+        batch.geometry.surfaces(batch.members, batch.rays, batch.hits, &mut self.surfaces);
+        self.front.resize(count);
+        self.cosine.resize(count, 0.0);
+        self.inside.resize(count, false);
+        self.skip.resize(count);
+        if let Some(modifier) = &batch.material.modifier {
+            for i in 0..count {
+                let (hit, Surface { point, normal, .. }) = (batch.hit(i), self.surfaces.get(i));
+                let [u, v, _] = math::frame(normal, batch.geometry.tangent(&hit, point));
+                let object_from_world = &batch.geometry.objects[hit.id.object as usize].object_from_world;
+                let uv = batch.geometry.uv(&hit, point);
+                let place = Place { point, normal, tangent: [u, v], uv, object_from_world };
+                self.surfaces.normal.set(i, modifier.normal(&place));
+            }
+        }
+        for (i, &member) in batch.members.iter().enumerate() {
+            let direction = batch.rays.direction.get(member as usize);
+            let Surface { point, mut geometric, mut normal } = self.surfaces.get(i);
+            let inside = direction.dot(geometric) >= 0.0;
+            if inside {
+                (geometric, normal) = (-geometric, -normal);
+                self.surfaces.geometric.set(i, geometric);
+                self.surfaces.normal.set(i, normal);
+            }
+            self.inside[i] = inside;
+            self.cosine[i] = (-direction.dot(normal)).max(0.0);
+            self.front.set(i, offset(point, geometric));
+            let id = batch.hits.id.get(member as usize);
+            self.skip.set(i, if batch.geometry.is_flat(id.object) { id } else { Id::NONE });
+        }
+    }
+
+    pub fn get<'a>(&self, batch: &Batch<'a>, i: usize, color: Vec3, gloss: Vec3) -> Point<'a> {
+        let member = batch.members[i] as usize;
+        let path = &batch.paths[member];
+        let SampleKey { pixel, .. } = batch.keys[path.node as usize];
+        Point {
+            path,
+            direction: batch.rays.direction.get(member),
+            key: SampleKey { pixel, index: path.index },
+            hit: batch.hits.get(member),
+            surface: self.surfaces.get(i),
+            inside: self.inside[i],
+            cosine: self.cosine[i],
+            color,
+            gloss,
+            front: self.front.get(i),
+            skip: self.skip.get(i),
+        }
+    }
+}
