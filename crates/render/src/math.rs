@@ -41,7 +41,7 @@ pub(crate) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
 
 /// Sine and cosine of an angle in turns, from -64 to 64; errors below 2e-7 (coefficients of [Moshier 1989] Cephes, `sinf`
 /// and `cosf`).
-#[inline]
+#[inline(always)]
 pub(crate) fn sin_cos_turns(turns: f32) -> (f32, f32) {
     // To the nearest quarter: adding 1.5 · 2²³ leaves no room for a fraction.
     const SHIFT: f32 = 12_582_912.0;

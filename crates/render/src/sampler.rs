@@ -21,13 +21,13 @@ impl SampleKey {
     }
 
     /// The key of part `i` of `count`, into which this sample divides.
-    #[inline]
+    #[inline(always)]
     pub fn nth(&self, i: u32, count: u32) -> Self {
         SampleKey { pixel: self.pixel, index: self.index.wrapping_mul(count).wrapping_add(i) }
     }
 
     /// The pair of dimensions `dimension`, each in [0, 1).
-    #[inline]
+    #[inline(always)]
     pub fn pair(&self, dimension: u32) -> [f32; 2] {
         sobol_pair(hash(self.pixel ^ hash(dimension.wrapping_mul(0x9e37_79b9))), self.index)
     }
@@ -38,7 +38,7 @@ impl SampleKey {
     }
 
     /// Two independent uniform numbers in [0, 1), without stratification.
-    #[inline]
+    #[inline(always)]
     pub fn random_pair(&self, dimension: u32) -> [f32; 2] {
         let a = hash(self.pixel ^ hash(self.index ^ hash(dimension)));
         [unit(a), unit(hash(a ^ 0x68bc_21eb))]
@@ -46,7 +46,7 @@ impl SampleKey {
 }
 
 /// Point `index` of the scrambled sequence `seed`.
-#[inline]
+#[inline(always)]
 fn sobol_pair(seed: u32, index: u32) -> [f32; 2] {
     // Scrambling the index keeps aligned blocks of it together, so that 4^k samples stay stratified.
     let index = owen(index, seed);
@@ -58,7 +58,7 @@ fn sobol_pair(seed: u32, index: u32) -> [f32; 2] {
 
 /// The second dimension of the Sobol' sequence: its generator matrix is Pascal's triangle modulo 2, where entry (j, k)
 /// is one if the bits of j are among those of k (Lucas), so that one step per bit of the position builds it up.
-#[inline]
+#[inline(always)]
 fn sobol_second(index: u32) -> u32 {
     let mut v = index.reverse_bits();
     v ^= (v & 0x5555_5555) << 1;
@@ -69,7 +69,7 @@ fn sobol_second(index: u32) -> u32 {
 }
 
 /// Owen scrambling of a binary fraction: every bit is flipped by a hash of those above it.
-#[inline]
+#[inline(always)]
 fn owen(fraction: u32, seed: u32) -> u32 {
     let mut v = fraction.reverse_bits();
     v ^= v.wrapping_mul(0x3d20_adea);
@@ -81,7 +81,7 @@ fn owen(fraction: u32, seed: u32) -> u32 {
 }
 
 /// A 32-bit mixer of low bias (`lowbias32` of [Wellons 2018] "Prospecting for Hash Functions").
-#[inline]
+#[inline(always)]
 pub(crate) fn hash(mut v: u32) -> u32 {
     v ^= v >> 16;
     v = v.wrapping_mul(0x7feb_352d);
@@ -91,7 +91,7 @@ pub(crate) fn hash(mut v: u32) -> u32 {
 }
 
 /// The top 24 bits as a number in [0, 1).
-#[inline]
+#[inline(always)]
 fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 / 16_777_216.0
 }

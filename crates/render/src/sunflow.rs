@@ -19,10 +19,11 @@ use crate::environment::Environment;
 use crate::geometry::{Geometry, Hits, Ray, Rays, Rows, Scratch, Surface};
 use crate::light::Light;
 use crate::material::{Albedo, Coat, Gloss, Response};
+use crate::options::Look;
 use crate::wave::{Batch, Path, Queues, RayKind, Rules, World};
 use caustics::{CausticMap, Nearest};
 use coat::Bsdf;
-use direct::Shadows;
+use direct::{Lit, Shadows};
 pub(crate) use indirect::Indirect;
 use point::{Point, Points};
 use virtual_lights::VirtualLights;
@@ -78,12 +79,19 @@ impl Rules for Sunflow {
         if let Albedo::Procedural(_) = batch.material.albedo {
             queues.stats.texture_points += batch.members.len() as u64;
         }
+        let mut lit = Vec::new();
         for i in 0..batch.members.len() {
             let point = room.point(batch, i);
-            self.respond(batch, &point, room, queues);
-            if room.shadows.is_full() {
-                room.shadows.trace(batch.geometry, queues, &mut room.scratch);
+            let (bsdf, color) = self.respond(batch, &point, room, queues);
+            if !bsdf.is_black() {
+                lit.push(Lit { point, bsdf, color });
             }
+            room.flush(batch.geometry, queues);
+        }
+        self.illuminate(batch.geometry, &lit, room, queues);
+        if let Indirect::VirtualLights(lights) = &self.indirect {
+            lit.retain(|lit| lit.color != Vec3::ZERO && lit.point.path.depth.diffuse < self.max_diffuse);
+            lights.illuminate(batch.geometry, &lit, room, queues);
         }
         room.shadows.trace(batch.geometry, queues, &mut room.scratch);
     }
@@ -142,6 +150,13 @@ impl Room {
         }
     }
 
+    /// Traces the shadow rays if there are many.
+    fn flush(&mut self, geometry: &Geometry, queues: &mut Queues<Vec3>) {
+        if self.shadows.is_full() {
+            self.shadows.trace(geometry, queues, &mut self.scratch);
+        }
+    }
+
     /// A prepared point.
     fn point<'a>(&self, batch: &Batch<'a>, i: usize) -> Point<'a> {
         self.points.get(batch, i, Vec3::from_array(self.colors[i]), Vec3::from_array(self.gloss[i]))
@@ -186,13 +201,21 @@ fn paint(albedo: &Albedo, batch: &Batch<'_>, points: &Points, texture_points: &m
 }
 
 impl Sunflow {
-    fn respond(&self, batch: &Batch<'_>, point: &Point<'_>, room: &mut Room, queues: &mut Queues<Vec3>) {
+    /// What a surface does with the ray that came to it. Returns how it takes light from the lights, and its matte colour.
+    fn respond(
+        &self,
+        batch: &Batch<'_>,
+        point: &Point<'_>,
+        room: &mut Room,
+        queues: &mut Queues<Vec3>,
+    ) -> (Bsdf, Vec3) {
         let specular = point.path.sees_light();
         match &batch.material.response {
             Response::Constant => self.emit(point, point.color, queues),
             Response::Emitter if specular && !point.inside => self.emit(point, point.color, queues),
             Response::Emitter => {}
-            Response::Matte(coat) => self.matte(batch, coat, point, specular, room, queues),
+            Response::Matte(coat) => return self.matte(batch, coat, point, specular, room, queues),
+            Response::Look(Look::Gray) => return (Bsdf::matte(Vec3::splat(0.5)), Vec3::ZERO),
             Response::Mirror if specular => self.reflect(point, schlick(point.color, point.cosine), queues),
             Response::Glass { eta, absorption } if specular => self.glass(point, *eta, *absorption, queues),
             // Behind a blurred ray mirrors and glass are black: §3.6.
@@ -205,6 +228,7 @@ impl Sunflow {
             Response::ViewCaustics => self.add_caustics(point, Vec3::ONE, &mut room.nearest, queues),
             Response::Look(look) => self.look(batch, point, *look, &mut room.shadows, queues),
         }
+        (Bsdf::matte(Vec3::ZERO), Vec3::ZERO)
     }
 
     fn emit(&self, point: &Point<'_>, light: Vec3, queues: &mut Queues<Vec3>) {
@@ -220,7 +244,7 @@ impl Sunflow {
         specular: bool,
         room: &mut Room,
         queues: &mut Queues<Vec3>,
-    ) {
+    ) -> (Bsdf, Vec3) {
         let mut color = point.color;
         let mut bsdf = Bsdf::matte(color);
         match *coat {
@@ -245,11 +269,11 @@ impl Sunflow {
                 }
             }
         }
-        self.illuminate(point, &bsdf, &mut room.shadows);
         if color != Vec3::ZERO {
             self.gather(point, color, &mut room.shadows, queues);
             self.add_caustics(point, color, &mut room.nearest, queues);
         }
+        (bsdf, color)
     }
 
     /// Light that comes to a matte surface of a colour by way of mirrors and glass.

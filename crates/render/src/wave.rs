@@ -113,6 +113,8 @@ pub(crate) struct Samples {
     pub keys: Vec<SampleKey>,
     /// What each counts in its pixel.
     pub weights: Vec<f32>,
+    /// How many each pixel has once all are traced.
+    pub of: u32,
 }
 
 impl Samples {
@@ -184,6 +186,8 @@ pub(crate) struct Batch<'a> {
     pub hits: &'a Hits,
     /// By camera sample.
     pub keys: &'a [SampleKey],
+    /// How many samples each pixel has.
+    pub of: u32,
 }
 
 impl Batch<'_> {
@@ -277,7 +281,7 @@ impl<R: Rules> Workspace<R> {
                 self.look(world, rules);
             }
             self.miss(rules, first);
-            self.shade(world, rules, &samples.keys);
+            self.shade(world, rules, samples);
             if first {
                 // The rows go back to where they came from.
                 std::mem::swap(&mut self.current.rays, &mut samples.rays);
@@ -375,7 +379,8 @@ impl<R: Rules> Workspace<R> {
         }
     }
 
-    fn shade(&mut self, world: &World, rules: &R, keys: &[SampleKey]) {
+    fn shade(&mut self, world: &World, rules: &R, samples: &Samples) {
+        let Samples { ref keys, of, .. } = *samples;
         let Workspace { current: Paths { rays, paths }, hits, sorted, starts, room, queues, .. } = self;
         let mut from = 0;
         for (material, &end) in world.materials.iter().zip(&starts[1..]) {
@@ -383,7 +388,7 @@ impl<R: Rules> Workspace<R> {
             from = end as usize;
             if !members.is_empty() {
                 rules.shade(
-                    &Batch { geometry: &world.geometry, material, members, rays, paths, hits, keys },
+                    &Batch { geometry: &world.geometry, material, members, rays, paths, hits, keys, of },
                     room,
                     queues,
                 );

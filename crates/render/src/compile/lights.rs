@@ -126,7 +126,12 @@ impl Lit {
     fn surround(&mut self, environment: Environment, samples: [u32; 2], lock: bool) {
         let environment = Arc::new(environment);
         let [samples, low_samples] = samples.map(|samples| samples.max(LEAST_SAMPLES));
-        self.lights.push(Light::Surroundings { environment: environment.clone(), samples, low_samples, lock });
+        let light = if lock {
+            Light::beams(&environment, [samples, low_samples], self.lights.len() as u64)
+        } else {
+            Light::Surroundings { environment: environment.clone(), samples }
+        };
+        self.lights.push(light);
         self.surroundings.get_or_insert(environment);
     }
 

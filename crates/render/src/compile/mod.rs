@@ -81,6 +81,7 @@ impl CompiledScene {
 
     /// Aims the samples of a wave.
     pub(crate) fn aim(&self, shots: &Shots<'_>, seed: u64, samples: &mut Samples) {
+        samples.of = shots.of;
         match &self.meaning {
             &Meaning::Sunflow { ref camera, ref filter, jitter, .. } => {
                 samples.resize(shots.count());

@@ -180,7 +180,7 @@ impl Geometry {
                 let local = object.object_from_world.point(point);
                 Some(object.world_from_object.vector(Vec3::new(-local.y, local.x, 0.0)))
             }
-            Shape::Plane(_) => None,
+            Shape::Plane(_) | Shape::Spheres(_) | Shape::Analytic(_) => None,
             Shape::Mesh(index) | Shape::MeshInstance(index) => {
                 let [uv0, uv1, uv2] = self.meshes[index as usize].triangle_uvs(hit.id.index as usize)?;
                 let [v0, v1, v2] = self.triangle(hit)?;

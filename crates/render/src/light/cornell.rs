@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-use super::{Arrival, BEFORE, Receiver};
+use super::BEFORE;
+use super::fan::Shape;
 
 /// The rectangle.
 #[derive(Debug, Clone, Copy)]
@@ -26,19 +27,30 @@ impl Ceiling {
         (high.x - low.x) * (high.y - low.y)
     }
 
-    /// Sample `xi` of `count`, spread evenly over the area.
-    pub fn arrive(&self, at: &Receiver, [u, v]: [f32; 2], count: f32) -> Option<Arrival> {
+    /// `None` from outside of the room.
+    pub(super) fn seen_from(&self, point: Vec3) -> Option<Above> {
         let [min, max] = self.room;
-        let inside = at.point.cmpge(min).all() && at.point.cmple(max).all() && at.point.z < max.z;
-        if !inside {
-            return None;
-        }
+        let inside = point.cmpge(min).all() && point.cmple(max).all() && point.z < max.z;
         let [low, high] = self.corners();
-        let target = Vec3::new(low.x + u * (high.x - low.x), low.y + v * (high.y - low.y), max.z);
-        let to = target - at.point;
-        let distance2 = to.length_squared();
+        inside.then(|| Above { low: low - point, size: high - low, area: self.area() })
+    }
+}
+
+/// The rectangle above a point.
+pub(super) struct Above {
+    /// From the point to the corner.
+    low: Vec3,
+    size: Vec3,
+    area: f32,
+}
+
+impl Shape for Above {
+    /// Spread evenly over the area.
+    #[inline(always)]
+    fn sample(&self, [u, v]: [f32; 2]) -> (Vec3, f32, f32) {
+        let to = Vec3::new(self.low.x + u * self.size.x, self.low.y + v * self.size.y, self.low.z);
+        let distance2 = to.dot(to);
         let distance = distance2.sqrt();
-        let irradiance = self.radiance * (self.area() * to.z / (distance * distance2 * count));
-        Some(Arrival { direction: to / distance, distance: distance * BEFORE, irradiance })
+        (to * (1.0 / distance), distance * BEFORE, self.area * to.z / (distance * distance2))
     }
 }

@@ -18,7 +18,7 @@ impl Light {
                 let area: f32 = triangles.iter().map(|triangle| triangle.area).sum();
                 triangles.first().map_or(Vec3::ZERO, |triangle| triangle.radiance * (pi * area))
             }
-            Light::Sun { .. } | Light::Surroundings { .. } => Vec3::ZERO,
+            Light::Sun { .. } | Light::Surroundings { .. } | Light::Beams(_) => Vec3::ZERO,
         }
     }
 
@@ -59,7 +59,7 @@ impl Light {
                 let origin = math::offset(triangle.point(place), triangle.normal);
                 Some((origin, math::cosine_hemisphere(triangle.normal, [u, v])))
             }
-            Light::Sun { .. } | Light::Surroundings { .. } => None,
+            Light::Sun { .. } | Light::Surroundings { .. } | Light::Beams(_) => None,
         }
     }
 }

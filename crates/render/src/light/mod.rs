@@ -2,6 +2,7 @@
 
 mod cornell;
 mod emit;
+mod fan;
 mod sphere;
 mod triangle;
 
@@ -13,6 +14,7 @@ use crate::environment::Environment;
 use crate::sampler::SampleKey;
 pub(crate) use cornell::Ceiling;
 pub(crate) use sphere::Ball;
+use triangle::Seen;
 pub(crate) use triangle::Shining;
 
 /// A light in the world.
@@ -30,8 +32,11 @@ pub(crate) enum Light {
     Triangles { triangles: Arc<[Shining]>, samples: u32 },
     /// The light in the ceiling of a Cornell box.
     Ceiling(Ceiling),
-    /// The surroundings. With `lock`, all points look at the same directions.
-    Surroundings { environment: Arc<Environment>, samples: u32, low_samples: u32, lock: bool },
+    /// The surroundings, looked at in other directions by every point.
+    Surroundings { environment: Arc<Environment>, samples: u32 },
+    /// Parallel light from a few directions that all points share; points that light comes to by way of others take the
+    /// second list.
+    Beams([Arc<[Arrival]>; 2]),
 }
 
 /// A point that asks for light.
@@ -42,6 +47,8 @@ pub(crate) struct Receiver {
     pub normal: Vec3,
     /// The light comes by way of another matte surface: one sample will do.
     pub indirect: bool,
+    /// So many samples of the pixel share the work of one.
+    pub share: u32,
     pub key: SampleKey,
     /// The sample dimension of the first light; the others have those that follow.
     pub dimension: u32,
@@ -66,7 +73,20 @@ const EACH: usize = 16;
 const CHOSEN: u32 = 64;
 
 impl Light {
-    /// What arrives at a point, if nothing is in the way: light `number` of the scene, sample by sample.
+    /// The surroundings as beams from so many directions, for direct and for indirect light.
+    pub fn beams(environment: &Environment, counts: [u32; 2], number: u64) -> Light {
+        let beams = |count: u32| {
+            let beam = |i: u32| {
+                let (direction, radiance) = environment.sample(SampleKey::shared(i, number + 1).pair(0))?;
+                Some(Arrival { direction, distance: f32::INFINITY, irradiance: radiance / count as f32 })
+            };
+            (0..count).filter_map(beam).collect()
+        };
+        Light::Beams(counts.map(beams))
+    }
+
+    /// What arrives at a point, if nothing is in the way: light `number` of the scene, sample by sample. Beams are left
+    /// out.
     #[inline]
     pub fn arrive(&self, number: u32, at: &Receiver, each: &mut impl FnMut(Arrival)) {
         match self {
@@ -89,46 +109,58 @@ impl Light {
             Light::Sun { towards, irradiance } => {
                 each(Arrival { direction: *towards, distance: f32::INFINITY, irradiance: *irradiance });
             }
-            Light::Ball(ball) => spread(at, number, ball.samples, |xi, n| ball.arrive(at, xi, n), each),
-            Light::Ceiling(light) => spread(at, number, light.samples, |xi, n| light.arrive(at, xi, n), each),
+            Light::Beams(_) => {}
+            Light::Ball(ball) => {
+                if let Some(cone) = ball.seen_from(at.point) {
+                    fan::spread(at, number, ball.samples, &cone, ball.radiance, each);
+                }
+            }
+            Light::Ceiling(light) => {
+                if let Some(seen) = light.seen_from(at.point) {
+                    fan::spread(at, number, light.samples, &seen, light.radiance, each);
+                }
+            }
             Light::Triangles { triangles, samples } if triangles.len() <= EACH => {
-                for seen in triangles.iter().filter_map(|triangle| triangle.seen_from(at)) {
-                    spread(at, number, *samples, |xi, n| seen.arrive(at, xi, n), each);
+                for triangle in triangles.iter() {
+                    match triangle.seen_from(at) {
+                        Some(Seen::Wide(wide)) => fan::spread(at, number, *samples, &wide, triangle.radiance, each),
+                        Some(Seen::Small(small)) => fan::spread(at, number, *samples, &small, triangle.radiance, each),
+                        None => {}
+                    }
                 }
             }
             Light::Triangles { triangles, samples } => {
                 let samples = samples.saturating_mul(triangles.len() as u32).min((*samples).max(CHOSEN));
-                spread(at, number, samples, |xi, n| triangle::choose(triangles, at, xi, n), each);
+                one_by_one(at, number, samples, |xi, n| triangle::choose(triangles, at, xi, n), each);
             }
-            &Light::Surroundings { ref environment, samples, low_samples, lock } => {
+            Light::Surroundings { environment, samples } => {
                 let look = |xi: [f32; 2], n: f32| {
                     let (direction, radiance) = environment.sample(xi)?;
                     Some(Arrival { direction, distance: f32::INFINITY, irradiance: radiance / n })
                 };
-                if lock {
-                    let count = if at.indirect { low_samples } else { samples };
-                    for i in 0..count {
-                        let xi = SampleKey::shared(i, u64::from(number) + 1).pair(0);
-                        look(xi, count as f32).into_iter().for_each(&mut *each);
-                    }
-                } else {
-                    spread(at, number, samples, look, each);
-                }
+                one_by_one(at, number, *samples, look, each);
             }
         }
     }
 }
 
-/// Samples of a light that is seen under an angle; `look` gets two uniform numbers and the number of samples.
+impl Receiver {
+    /// How many samples it takes of a light that asks for `samples`.
+    pub fn count(&self, samples: u32) -> u32 {
+        if self.indirect { samples.min(1) } else { samples.div_ceil(self.share.max(1)) }
+    }
+}
+
+/// Samples of a light each of which costs its own search; `look` gets two uniform numbers and the number of samples.
 #[inline]
-fn spread(
+fn one_by_one(
     at: &Receiver,
     number: u32,
     samples: u32,
     look: impl Fn([f32; 2], f32) -> Option<Arrival>,
     each: &mut impl FnMut(Arrival),
 ) {
-    let count = if at.indirect { samples.min(1) } else { samples };
+    let count = at.count(samples);
     for i in 0..count {
         let xi = at.key.nth(i, count).pair(at.dimension + number);
         look(xi, count as f32).into_iter().for_each(&mut *each);

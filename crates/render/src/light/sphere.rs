@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-use super::{Arrival, BEFORE, Receiver};
+use super::BEFORE;
+use super::fan::Shape;
 use crate::math;
 
 /// The sphere.
@@ -14,26 +15,48 @@ pub(crate) struct Ball {
     pub samples: u32,
 }
 
+/// The cone under which a point sees it.
+pub(super) struct Cone {
+    /// From the point to the centre, and how long that is.
+    to: Vec3,
+    distance2: f32,
+    radius2: f32,
+    /// Two axes across the cone, and its own.
+    axes: [Vec3; 3],
+    /// One minus the cosine of its half angle.
+    height: f32,
+}
+
 impl Ball {
-    /// Sample `xi` of `count`, spread evenly over the cone under which the sphere is seen ([Shirley, Wang, Zimmerman
-    /// 1996] "Monte Carlo Techniques for Direct Lighting Calculations", §3.2).
-    pub fn arrive(&self, at: &Receiver, [u, v]: [f32; 2], count: f32) -> Option<Arrival> {
-        let to = self.center - at.point;
+    /// `None` from within.
+    pub(super) fn seen_from(&self, point: Vec3) -> Option<Cone> {
+        let to = self.center - point;
         let (distance2, radius2) = (to.length_squared(), self.radius * self.radius);
         if distance2 <= radius2 {
             return None;
         }
-        // One minus the cosine of the cone, without the cancellation for spheres far away.
+        let w = to / distance2.sqrt();
+        let (u, v) = math::basis(w);
+        // Without the cancellation for spheres far away.
         let sine2 = radius2 / distance2;
         let height = sine2 / (1.0 + (1.0 - sine2).sqrt());
-        let cosine = 1.0 - u * height;
+        Some(Cone { to, distance2, radius2, axes: [u, v, w], height })
+    }
+}
+
+impl Shape for Cone {
+    /// Spread evenly over the cone ([Shirley, Wang, Zimmerman 1996] "Monte Carlo Techniques for Direct Lighting
+    /// Calculations", §3.2).
+    #[inline(always)]
+    fn sample(&self, [a, b]: [f32; 2]) -> (Vec3, f32, f32) {
+        let [u, v, w] = self.axes;
+        let cosine = 1.0 - a * self.height;
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-        let w = to / distance2.sqrt();
-        let direction = math::around(w, v, sine, cosine);
+        let (sin, cos) = math::sin_cos_turns(b);
+        let direction = u * (sine * cos) + v * (sine * sin) + w * cosine;
         // Where the ray meets the near side; it grazes where rounding lets it miss.
-        let along = to.dot(direction);
-        let depth = (radius2 - (distance2 - along * along)).max(0.0).sqrt();
-        let irradiance = self.radiance * (2.0 * std::f32::consts::PI * height / count);
-        Some(Arrival { direction, distance: (along - depth) * BEFORE, irradiance })
+        let along = self.to.dot(direction);
+        let depth = (self.radius2 - (self.distance2 - along * along)).max(0.0).sqrt();
+        (direction, (along - depth) * BEFORE, 2.0 * std::f32::consts::PI * self.height)
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::fan::Shape;
 use super::{Arrival, BEFORE, Receiver};
 use crate::math;
 
@@ -46,22 +47,24 @@ impl Shining {
         all
     }
 
-    /// A point of it, evenly for two uniform numbers ([Heitz 2019] "A Low-Distortion Map Between Triangle and Square").
-    pub fn point(&self, [u, v]: [f32; 2]) -> Vec3 {
-        let [a, b, c] = self.corners;
-        let (x, y) = if v > u { (u * 0.5, v - u * 0.5) } else { (u - v * 0.5, v * 0.5) };
-        a * (1.0 - x - y) + b * x + c * y
+    /// A point of it, evenly for two uniform numbers.
+    pub fn point(&self, xi: [f32; 2]) -> Vec3 {
+        point_of(self.corners, xi)
     }
 
     /// How a point sees the triangle, unless it sees its back, or lies above it.
-    pub(super) fn seen_from(&self, at: &Receiver) -> Option<Seen<'_>> {
+    pub(super) fn seen_from(&self, at: &Receiver) -> Option<Seen> {
         let [a, b, c] = self.corners;
         let to = [a - at.point, b - at.point, c - at.point];
         let facing = to[0].dot(self.normal) < 0.0;
         if !facing || to[0].dot(at.normal) <= 0.0 && to[1].dot(at.normal) <= 0.0 && to[2].dot(at.normal) <= 0.0 {
             return None;
         }
-        Some(Seen { triangle: self, height: to[0].dot(self.normal), spherical: Spherical::new(to) })
+        let (normal, height) = (self.normal, to[0].dot(self.normal));
+        Some(match Spherical::new(to) {
+            Some(spherical) => Seen::Wide(Wide { spherical, normal, height }),
+            None => Seen::Small(Small { to, normal, area: self.area }),
+        })
     }
 
     /// A sample by area: `density` is that of all samples, per unit of area.
@@ -90,26 +93,53 @@ pub(super) fn by_area(triangles: &[Shining], [u, v]: [f32; 2]) -> Option<(&Shini
     Some((&triangles[chosen], [rest, v]))
 }
 
-/// A triangle as a point sees it.
-pub(super) struct Seen<'a> {
-    triangle: &'a Shining,
-    /// Of the triangle's plane above the point, along its normal.
-    height: f32,
-    /// Unless it is seen too small.
-    spherical: Option<Spherical>,
+/// A point of a triangle, evenly for two uniform numbers ([Heitz 2019] "A Low-Distortion Map Between Triangle and Square").
+#[inline(always)]
+fn point_of([a, b, c]: [Vec3; 3], [u, v]: [f32; 2]) -> Vec3 {
+    let (x, y) = if v > u { (u * 0.5, v - u * 0.5) } else { (u - v * 0.5, v * 0.5) };
+    a * (1.0 - x - y) + b * x + c * y
 }
 
-impl Seen<'_> {
-    /// Sample `xi` of `count`, spread evenly over the solid angle where that can be had.
-    #[inline]
-    pub fn arrive(&self, at: &Receiver, xi: [f32; 2], count: f32) -> Option<Arrival> {
-        let triangle = self.triangle;
-        let Some(spherical) = &self.spherical else { return triangle.arrive_by_area(at, xi, count / triangle.area) };
-        let direction = spherical.direction(xi);
-        let distance = self.height / direction.dot(triangle.normal);
-        let irradiance = triangle.radiance * (spherical.solid_angle / count);
-        let met = distance > 0.0 && distance < f32::INFINITY;
-        met.then_some(Arrival { direction, distance: distance * BEFORE, irradiance })
+/// A triangle as a point sees it.
+pub(super) enum Seen {
+    Wide(Wide),
+    Small(Small),
+}
+
+/// Under a wide angle.
+pub(super) struct Wide {
+    spherical: Spherical,
+    normal: Vec3,
+    /// Of the triangle's plane above the point, along its normal.
+    height: f32,
+}
+
+impl Shape for Wide {
+    /// Spread evenly over the solid angle.
+    #[inline(always)]
+    fn sample(&self, xi: [f32; 2]) -> (Vec3, f32, f32) {
+        let direction = self.spherical.direction(xi);
+        (direction, self.height / direction.dot(self.normal) * BEFORE, self.spherical.solid_angle)
+    }
+}
+
+/// Under so small an angle that its area will do.
+pub(super) struct Small {
+    /// From the point to the corners.
+    to: [Vec3; 3],
+    normal: Vec3,
+    area: f32,
+}
+
+impl Shape for Small {
+    /// Spread evenly over the area.
+    #[inline(always)]
+    fn sample(&self, xi: [f32; 2]) -> (Vec3, f32, f32) {
+        let to = point_of(self.to, xi);
+        let distance2 = to.dot(to);
+        let distance = distance2.sqrt();
+        let direction = to * (1.0 / distance);
+        (direction, distance * BEFORE, -direction.dot(self.normal) * self.area / distance2)
     }
 }
 
@@ -150,7 +180,7 @@ impl Spherical {
     }
 
     /// A direction evenly spread over it ([Arvo 1995] "Stratified Sampling of Spherical Triangles").
-    #[inline]
+    #[inline(always)]
     fn direction(&self, [u, v]: [f32; 2]) -> Vec3 {
         let Spherical { a, b, sin_alpha, cos_alpha, .. } = *self;
         let (s, t) = math::sin_cos_turns((u * self.solid_angle - self.alpha) * (0.5 * std::f32::consts::FRAC_1_PI));
@@ -160,7 +190,9 @@ impl Spherical {
         let cosine = if cosine.is_nan() { 1.0 } else { cosine.clamp(-1.0, 1.0) };
         let cut = a * cosine + self.c_from_a * (1.0 - cosine * cosine).sqrt();
         let height = 1.0 - v * (1.0 - cut.dot(b));
-        let across = (cut - b * b.dot(cut)).normalize_or_zero();
+        let across = cut - b * b.dot(cut);
+        let scale = 1.0 / across.dot(across).sqrt();
+        let across = across * if scale < f32::INFINITY { scale } else { 0.0 };
         b * height + across * (1.0 - height * height).max(0.0).sqrt()
     }
 }

@@ -129,7 +129,7 @@ impl Sunflow {
         let depth = point.path.depth;
         match depth.total() {
             _ if depth.reflection >= self.max_reflection || depth.diffuse > 0 || point.gloss == Vec3::ZERO => 0,
-            0 => samples,
+            0 => point.count(samples),
             _ => samples.min(1),
         }
     }

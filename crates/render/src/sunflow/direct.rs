@@ -1,12 +1,14 @@
 //! Light that comes straight from the lights.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use super::coat::Bsdf;
 use super::point::{Point, Which};
-use super::{Queues, Sunflow};
+use super::{Queues, Room, Sunflow};
 use crate::geometry::{Geometry, Ray, Rays, Scratch};
-use crate::light::{Arrival, Receiver};
+use crate::light::{Arrival, Light, Receiver};
 
 /// Rays towards lights, and what arrives if nothing is in the way.
 #[derive(Default)]
@@ -47,32 +49,76 @@ impl Shadows {
     }
 }
 
-impl Sunflow {
-    /// Direct light on a surface.
-    pub(super) fn illuminate(&self, point: &Point<'_>, bsdf: &Bsdf, shadows: &mut Shadows) {
-        if bsdf.is_black() {
+/// A surface that waits for light.
+pub(super) struct Lit<'a> {
+    pub point: Point<'a>,
+    pub bsdf: Bsdf,
+    /// Its matte colour, for virtual lights.
+    pub color: Vec3,
+}
+
+impl Lit<'_> {
+    /// Queues a ray towards light that arrives, unless the surface makes nothing of it.
+    #[inline]
+    pub fn ask(&self, arrival: Arrival, shadows: &mut Shadows) {
+        let (point, Arrival { direction, distance, irradiance }) = (&self.point, arrival);
+        let cosine = direction.dot(point.surface.normal);
+        if cosine <= 0.0 || direction.dot(point.surface.geometric) <= 0.0 {
             return;
         }
-        let at = Receiver {
-            point: point.front,
-            normal: point.surface.normal,
-            indirect: point.path.depth.diffuse > 0,
-            key: point.key,
-            dimension: point.dimension(Which::Lights),
-        };
+        let light = point.path.weight * self.bsdf.value(direction) * irradiance * cosine;
+        if light != Vec3::ZERO {
+            let ray = Ray { origin: point.front, direction, t_min: 0.0, t_max: distance, skip: point.skip };
+            shadows.push(ray, light, point.path.node);
+        }
+    }
+}
+
+impl Sunflow {
+    /// Direct light on surfaces, one light after the other, so that the rays towards it go together.
+    pub(super) fn illuminate(&self, geometry: &Geometry, lit: &[Lit<'_>], room: &mut Room, queues: &mut Queues<Vec3>) {
         for (light, number) in self.lights.iter().zip(0..) {
-            light.arrive(number, &at, &mut |arrival: Arrival| {
-                let Arrival { direction, distance, irradiance } = arrival;
-                let cosine = direction.dot(point.surface.normal);
-                if cosine <= 0.0 || direction.dot(point.surface.geometric) <= 0.0 {
-                    return;
+            if let Light::Beams(beams) = light {
+                self.shine(beams, geometry, lit, room, queues);
+                continue;
+            }
+            for lit in lit.iter().filter(|lit| !lit.bsdf.is_black()) {
+                let point = &lit.point;
+                let at = Receiver {
+                    point: point.front,
+                    normal: point.surface.normal,
+                    indirect: point.path.depth.diffuse > 0,
+                    share: point.share,
+                    key: point.key,
+                    dimension: point.dimension(Which::Lights),
+                };
+                light.arrive(number, &at, &mut |arrival| lit.ask(arrival, &mut room.shadows));
+                room.flush(geometry, queues);
+            }
+        }
+    }
+
+    /// Beams, of which the samples of a pixel take one each in turn.
+    fn shine(
+        &self,
+        beams: &[Arc<[Arrival]>; 2],
+        geometry: &Geometry,
+        lit: &[Lit<'_>],
+        room: &mut Room,
+        queues: &mut Queues<Vec3>,
+    ) {
+        let longest = beams[0].len().max(beams[1].len());
+        for number in 0..longest {
+            for lit in lit.iter().filter(|lit| !lit.bsdf.is_black()) {
+                let point = &lit.point;
+                let beams = &beams[usize::from(point.path.depth.diffuse > 0)];
+                let share = (point.share.max(1) as usize).min(beams.len().max(1));
+                if number < beams.len() && number % share == point.key.index as usize % share {
+                    let beam = beams[number];
+                    lit.ask(Arrival { irradiance: beam.irradiance * share as f32, ..beam }, &mut room.shadows);
                 }
-                let light = point.path.weight * bsdf.value(direction) * irradiance * cosine;
-                if light != Vec3::ZERO {
-                    let ray = Ray { origin: point.front, direction, t_min: 0.0, t_max: distance, skip: point.skip };
-                    shadows.push(ray, light, point.path.node);
-                }
-            });
+            }
+            room.flush(geometry, queues);
         }
     }
 }

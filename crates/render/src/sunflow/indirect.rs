@@ -50,10 +50,10 @@ impl Sunflow {
             return;
         }
         match self.indirect {
-            Indirect::None | Indirect::Instant { .. } => {}
-            Indirect::VirtualLights(ref lights) => lights.illuminate(point, color, shadows),
+            // Virtual lights shine on all points of a batch, after this.
+            Indirect::None | Indirect::Instant { .. } | Indirect::VirtualLights(_) => {}
             Indirect::Paths { samples } => {
-                let count = if depth.diffuse == 0 { samples } else { samples.min(1) };
+                let count = if depth.diffuse == 0 { point.count(samples) } else { samples.min(1) };
                 for i in 0..count {
                     let key = point.key.nth(i, count);
                     let xi = key.pair(point.dimension(Which::Gather));
@@ -97,6 +97,7 @@ impl Sunflow {
             return;
         }
         let t_max = if endless { f32::INFINITY } else { distance };
+        let samples = point.count(samples);
         let light = point.path.weight * (bright - dark) / samples as f32;
         for i in 0..samples {
             let xi = point.key.nth(i, samples).pair(point.dimension(Which::Gather));

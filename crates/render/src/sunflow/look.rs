@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 
-use super::coat::Bsdf;
 use super::direct::Shadows;
 use super::point::Point;
 use super::{Batch, Queues, Sunflow};
@@ -33,7 +32,7 @@ impl Sunflow {
                 let channel = |shift: u32| 0.1 + 0.9 * (bits >> shift & 255) as f32 / 255.0;
                 self.emit(point, Vec3::new(channel(0), channel(8), channel(16)) * point.cosine, queues);
             }
-            Look::Gray => self.illuminate(point, &Bsdf::matte(Vec3::splat(0.5)), shadows),
+            Look::Gray => {}
             Look::AmbientOcclusion => {
                 self.occlusion(point, [Vec3::ZERO, Vec3::ONE], OCCLUSION_SAMPLES, f32::INFINITY, shadows, queues);
             }

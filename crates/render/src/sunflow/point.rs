@@ -14,6 +14,8 @@ pub(super) struct Point<'a> {
     /// Of the ray that arrived.
     pub direction: Vec3,
     pub key: SampleKey,
+    /// How many samples of the pixel share the work: each takes so many rays less.
+    pub share: u32,
     pub hit: Hit,
     pub surface: Surface,
     /// The ray came from the inside of the shape.
@@ -52,6 +54,11 @@ impl Point<'_> {
     /// A ray from here to wherever it goes.
     pub fn leave(&self, origin: Vec3, direction: Vec3) -> Ray {
         Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: self.skip }
+    }
+
+    /// How many rays go out of as many as are asked for.
+    pub fn count(&self, samples: u32) -> u32 {
+        samples.div_ceil(self.share.max(1))
     }
 
     /// A pair of sample dimensions that belongs to this bounce alone.
@@ -121,6 +128,7 @@ impl Points {
             path,
             direction: batch.rays.direction.get(member),
             key: SampleKey { pixel, index: path.index },
+            share: batch.of,
             hit: batch.hits.get(member),
             surface: self.surfaces.get(i),
             inside: self.inside[i],
