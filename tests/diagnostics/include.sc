@@ -5,7 +5,8 @@ include "include/broken.sc"
 include "include/loop.sc"
 # error: 10-18 cannot include `model.obj`: not a `.sc` file
 include "model.obj"
-# warning: 10-16 skipped: `.sca` files are not supported yet
+# error: 10-16 cannot read `old.sca`: no such file
+# hint: looked in the current folder, `include`
 include "old.sca"
 include
 # error: 1 `include` expects a file name, found the end of the file

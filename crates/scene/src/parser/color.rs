@@ -23,7 +23,11 @@ impl Parser<'_> {
             }
             found => Err(parser.expected("a colour", found)),
         })?;
-        let color = Color { spec: spec.value, span: spec.span };
+        self.usable(Color { spec: spec.value, span: spec.span })
+    }
+
+    /// The colour, if its numbers are finite.
+    fn usable(&mut self, color: Color) -> Parsed<Color> {
         if color.linear().iter().all(|value| value.is_finite()) {
             return Ok(color);
         }
@@ -39,19 +43,29 @@ impl Parser<'_> {
 
     fn color_group(&mut self) -> Parsed<ColorSpec> {
         self.next();
+        let spec = self.color_of_space()?;
+        match self.next() {
+            Some(token) if self.is(token, "}") => Ok(spec),
+            found => Err(self.expected("`}` after the colour", found)),
+        }
+    }
+
+    /// `SPACE …`, as the generic form of the scene writes it.
+    pub(super) fn color_in_space(&mut self) -> Parsed<Color> {
+        let spec = self.spanned(Self::color_of_space)?;
+        self.usable(Color { spec: spec.value, span: spec.span })
+    }
+
+    fn color_of_space(&mut self) -> Parsed<ColorSpec> {
         let space = self.word("a colour space")?;
-        let spec = match space.value.as_str() {
+        Ok(match space.value.as_str() {
             "sRGB nonlinear" => ColorSpec::SrgbNonlinear(self.numbers()?),
             "sRGB linear" => ColorSpec::Linear(self.numbers()?),
             "XYZ" => ColorSpec::Xyz(self.numbers()?),
             "blackbody" => ColorSpec::Blackbody(self.number()?),
             name if name.starts_with("spectrum") => self.spectrum(&space)?,
             _ => return Err(self.unknown_space(&space)),
-        };
-        match self.next() {
-            Some(token) if self.is(token, "}") => Ok(spec),
-            found => Err(self.expected("`}` after the colour", found)),
-        }
+        })
     }
 
     fn unknown_space(&mut self, space: &Name) -> Failed {

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Context, Failed, Parsed, Parser, unreadable};
+use super::{Context, Failed, Parsed, Parser, generic, unreadable};
 use crate::description::{Include, Name};
 use crate::diagnostic::Diagnostic;
 use crate::lexer::{Lexer, Syntax, Token};
@@ -55,7 +55,12 @@ impl Parser<'_> {
             std::mem::take(&mut self.loose),
             std::mem::replace(&mut self.direct_samples, 1),
         );
-        let statements = self.statements();
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let statements = match extension.as_str() {
+            "sca" => generic::statements(self),
+            "scb" => generic::binary(self),
+            _ => self.statements(),
+        };
         let found = std::mem::replace(&mut self.loose, outer.3);
         self.report_loose(found);
         (self.bytes, self.file, self.lexer, self.direct_samples) = (outer.0, outer.1, outer.2, outer.4);
@@ -133,61 +138,76 @@ impl Parser<'_> {
 pub(super) fn include(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     let name = parser.word("a file name")?;
     parser.failed_at = name.span.end;
+    let span = parser.span(head).to(name.span);
+    follow(parser, name, span);
+    Ok(())
+}
+
+/// Reads the file of a statement that includes it.
+pub(super) fn follow(parser: &mut Parser<'_>, name: Name, span: Span) {
     let extension = Path::new(&name.value).extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     match extension.as_str() {
-        "sc" => {}
-        "sca" | "scb" | "rib" | "ra2" | "ra3" => {
-            let message = format!("skipped: `.{extension}` files are not supported yet");
-            parser.diagnostics.push(Diagnostic::warning(name.span, message));
-            return Ok(());
+        "sc" | "sca" | "scb" => {}
+        "rib" | "ra2" | "ra3" => {
+            let message = format!("skipped: `.{extension}` files cannot be included");
+            let hint = "name a mesh by an object of type `file-mesh`";
+            parser.diagnostics.push(Diagnostic::warning(name.span, message).hint(hint));
+            return;
         }
         _ => {
             let message = format!("cannot include `{}`: not a `.sc` file", super::value::shorten(&name.value));
             parser.diagnostics.push(Diagnostic::error(name.span, message));
-            return Ok(());
+            return;
         }
     }
     let (path, bytes) = match parser.find(&name) {
         Ok(found) => found,
         Err(diagnostic) => {
             parser.diagnostics.push(diagnostic);
-            return Ok(());
+            return;
         }
     };
     if parser.refuse_loop(&name, &path).is_err() {
-        return Ok(());
+        return;
     }
     if parser.files.open.len() >= MAX_DEPTH || parser.files.count >= MAX_FILES {
         let limits = format!("at most {MAX_FILES} files, {MAX_DEPTH} deep");
         let diagnostic = Diagnostic::error(name.span, format!("too many includes: {limits}, are read"));
         parser.diagnostics.push(diagnostic);
-        return Ok(());
+        return;
     }
     let file = parser.scene.sources.iter().count() as u32;
-    parser.scene.includes.push(Include { span: parser.span(head).to(name.span), name: name.clone(), file });
+    parser.scene.includes.push(Include { span, name: name.clone(), file });
     parser.file(&path, bytes, Some(name.span));
     parser.context = Context::default();
-    Ok(())
 }
 
 /// `includepath FOLDER`: one more folder in which includes are looked for.
 pub(super) fn include_path(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
     let name = parser.word("a folder")?;
-    let folder = parser.folder(&name);
+    add_include_folder(parser, &name);
+    Ok(())
+}
+
+pub(super) fn add_include_folder(parser: &mut Parser<'_>, name: &Name) {
+    let folder = parser.folder(name);
     if !parser.scene.include_folders.contains(&folder) {
         parser.scene.include_folders.push(folder);
     }
-    Ok(())
 }
 
 /// `texturepath FOLDER`: one more folder in which textures are looked for.
 pub(super) fn texture_path(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
     let name = parser.word("a folder")?;
-    let folder = parser.folder(&name);
+    add_texture_folder(parser, &name);
+    Ok(())
+}
+
+pub(super) fn add_texture_folder(parser: &mut Parser<'_>, name: &Name) {
+    let folder = parser.folder(name);
     if !parser.scene.texture_folders.contains(&folder) {
         parser.scene.texture_folders.push(folder);
     }
-    Ok(())
 }
 
 /// The path without `.` and `a/..`, so that a file has one name.

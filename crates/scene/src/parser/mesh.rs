@@ -25,8 +25,8 @@ enum Attribute<const N: usize> {
 
 /// Numbers and where they were written.
 #[derive(Debug)]
-struct List<T> {
-    values: Vec<T>,
+pub(super) struct List<T> {
+    pub values: Vec<T>,
     /// Numbers that are left over at the end.
     rest: usize,
     /// The cursor before the first number.
@@ -77,7 +77,7 @@ pub(super) const KEYS: &[Key<Draft>] = &[
 ];
 
 /// What the numbers of a list are read with, and what they must be.
-trait Number: Copy + Default {
+pub(super) trait Number: Copy + Default {
     const WHAT: &'static str;
     fn is_usable(self) -> bool;
 }
@@ -148,7 +148,7 @@ impl Parser<'_> {
     }
 
     /// As many numbers as there are; room is made for as many tuples as are expected.
-    fn list<T: Number, const N: usize>(
+    pub(super) fn list<T: Number, const N: usize>(
         &mut self,
         key: Span,
         expected: usize,
@@ -212,7 +212,7 @@ impl Parser<'_> {
     }
 
     /// Compares a list with the number of tuples that was announced.
-    fn check_count<T: Number, const N: usize>(&mut self, list: &List<[T; N]>, count: usize) -> Parsed<()> {
+    pub(super) fn check_count<T: Number, const N: usize>(&mut self, list: &List<[T; N]>, count: usize) -> Parsed<()> {
         match (list.values.len() == count, list.rest) {
             (true, 0) => Ok(()),
             _ => Err(self.wrong_count(list, count.saturating_mul(N), list.values.len() * N + list.rest)),

@@ -8,6 +8,7 @@
 mod block;
 mod camera;
 mod color;
+mod generic;
 mod gi;
 mod image;
 mod include;

@@ -12,8 +12,8 @@ use crate::source::{Span, Spanned};
 /// about 2 GB; nothing that is looked at needs more.
 const MOST_GENERATED: u64 = 20_000_000;
 /// Patches of the teapot and of the elephant.
-const TEAPOT_PATCHES: u64 = 32;
-const GUMBO_PATCHES: u64 = 128;
+pub(super) const TEAPOT_PATCHES: u64 = 32;
+pub(super) const GUMBO_PATCHES: u64 = 128;
 /// Sunflow draws no deeper flakes.
 const DEEPEST_FLAKE: i64 = 20;
 
@@ -240,17 +240,24 @@ impl Parser<'_> {
     fn tessellation(&mut self, shape: &ShapeDraft, patches: u64, head: Span) -> Option<Tessellation> {
         let default = Tessellation::default();
         let subdivs = shape.subdivs.map_or(default.subdivs, |subdivs| subdivs.value);
+        let place = shape.subdivs.map_or(head, |subdivs| subdivs.span);
+        self.bounded(Tessellation { subdivs, smooth: shape.smooth.unwrap_or(default.smooth) }, patches, place)
+    }
+
+    /// The tessellation of `patches` patches, unless these become too many triangles.
+    pub(super) fn bounded(&mut self, tessellation: Tessellation, patches: u64, place: Span) -> Option<Tessellation> {
+        let subdivs = tessellation.subdivs;
         let triangles = patches * 2 * u64::from(subdivs) * u64::from(subdivs);
         self.generated = self.generated.saturating_add(triangles);
         if self.generated > MOST_GENERATED {
             let message = format!("the shape has {triangles} triangles: too many, or too many with those before it");
-            let diagnostic = Diagnostic::error(shape.subdivs.map_or(head, |subdivs| subdivs.span), message);
+            let diagnostic = Diagnostic::error(place, message);
             let hint = format!("use a smaller `subdivs`: a scene may make {MOST_GENERATED} triangles from patches");
             self.diagnostics.push(diagnostic.hint(hint));
             self.generated -= triangles;
             return None;
         }
-        Some(Tessellation { subdivs, smooth: shape.smooth.unwrap_or(default.smooth) })
+        Some(tessellation)
     }
 
     /// A whole number within its limits.

@@ -1,0 +1,100 @@
+//! What each camera sees where: scenes of balls in plain colours (the format reference's §3.2 and check values).
+
+use std::path::Path;
+
+use jaspe_render::{CompileOptions, Film, RenderOptions, compile, render};
+use jaspe_scene::{MemoryLoader, parse};
+
+const SHADERS: &str = "shader { name red type constant 1 0 0 } shader { name green type constant 0 1 0 }
+    shader { name blue type constant 0 0 1 }";
+
+fn film(camera: &str, balls: &str) -> Film {
+    let text =
+        format!("image {{ resolution 64 64 aa 0 0 samples 64 filter box }} {SHADERS} camera {{ {camera} }} {balls}");
+    let loader = MemoryLoader::default();
+    let (scene, diagnostics) = parse(Path::new("view.sc"), text.as_bytes(), &loader);
+    assert!(diagnostics.is_empty(), "{diagnostics:?}");
+    let compiled = compile(&scene, &loader, &CompileOptions::default());
+    let scene = compiled.scene.expect("no errors");
+    render(&scene, &RenderOptions::default(), &()).expect("not cancelled").0
+}
+
+#[track_caller]
+fn sees(film: &Film, [x, y]: [u32; 2], color: [f32; 3], alpha: f32) {
+    let pixel = film.pixels[(y * film.width + x) as usize];
+    let expected = [color[0], color[1], color[2], alpha];
+    let is_near = pixel.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-3);
+    assert!(is_near, "{pixel:?} at ({x}, {y}) is not {expected:?}");
+}
+
+const RED: [f32; 3] = [1.0, 0.0, 0.0];
+const GREEN: [f32; 3] = [0.0, 1.0, 0.0];
+const BLUE: [f32; 3] = [0.0, 0.0, 1.0];
+const NOTHING: [f32; 3] = [0.0; 3];
+
+const TWO: &str = "object { shader red type sphere c 1 0 0 r .3 } object { shader green type sphere c 0 1 0 r .3 }";
+
+#[test]
+fn right_and_up_are_where_they_should_be() {
+    let film = film("type pinhole eye 0 0 5 target 0 0 0 up 0 1 0 fov 40 aspect 1", TWO);
+    sees(&film, [50, 32], RED, 1.0);
+    sees(&film, [31, 13], GREEN, 1.0);
+    sees(&film, [12, 32], NOTHING, 0.0);
+}
+
+#[test]
+fn a_transform_stands_for_eye_target_and_up() {
+    let film = film("type pinhole transform { translate 0 0 5 } fov 40 aspect 1", TWO);
+    sees(&film, [50, 32], RED, 1.0);
+    sees(&film, [31, 13], GREEN, 1.0);
+    let turned = self::film("type pinhole transform { translate 0 0 5 rotatey 180 } fov 40 aspect 1", TWO);
+    sees(&turned, [13, 32], RED, 1.0);
+}
+
+#[test]
+fn a_shift_moves_the_plane_of_the_picture() {
+    // tan 20° is 0.364: the view goes from 0 to twice that, and the red ball, at 1/5, stands in its left half.
+    let film = film("type pinhole eye 0 0 5 target 0 0 0 up 0 1 0 fov 40 aspect 1 shift 0.364 0", TWO);
+    sees(&film, [17, 32], RED, 1.0);
+    sees(&film, [0, 13], GREEN, 1.0);
+    sees(&film, [50, 32], NOTHING, 0.0);
+}
+
+#[test]
+fn a_spherical_camera_sees_all_around() {
+    let balls = "object { shader red type sphere c 10 0 0 r 3 } object { shader green type sphere c 0 10 0 r 3 }
+        object { shader blue type sphere c 0 0 -10 r 3 }";
+    let film = film("type spherical eye 0 0 0 target 0 0 -1 up 0 1 0", balls);
+    sees(&film, [31, 32], BLUE, 1.0);
+    sees(&film, [47, 32], RED, 1.0);
+    sees(&film, [31, 1], GREEN, 1.0);
+    sees(&film, [15, 32], NOTHING, 0.0);
+}
+
+#[test]
+fn a_fisheye_sees_half_of_it_in_a_disk() {
+    let balls = "object { shader red type sphere c 10 0 -4 r 3 } object { shader green type sphere c 0 7 -7 r 1 }
+        object { shader blue type sphere c 0 0 -10 r 3 }";
+    let film = film("type fisheye eye 0 0 0 target 0 0 -1 up 0 1 0", balls);
+    sees(&film, [31, 32], BLUE, 1.0);
+    sees(&film, [61, 31], RED, 1.0);
+    // Half way between the axis and up: at sin 45° of the radius.
+    sees(&film, [32, 9], GREEN, 1.0);
+    sees(&film, [1, 1], NOTHING, 0.0);
+}
+
+#[test]
+fn a_lens_is_sharp_at_its_distance_and_blurs_as_its_shape_says() {
+    let lens = "type thinlens eye 0 0 5 target 0 0 0 up 0 1 0 fov 40 aspect 1 fdist 5 lensr 0.5";
+    let near = "object { shader red type sphere c 0 0 0 r .1 }";
+    let sharp = film(lens, near);
+    sees(&sharp, [31, 32], RED, 1.0);
+    sees(&sharp, [38, 32], NOTHING, 0.0);
+    let spread = |lens: &str| {
+        let film = film(lens, "object { shader red type sphere c 0 0 3 r .05 }");
+        film.pixels.iter().filter(|pixel| pixel[0] > 0.0).count()
+    };
+    let (round, square) = (spread(lens), spread(&format!("{lens} sides 4 rotation 45")));
+    // A square in a circle has 2/π of its area.
+    assert!(round > square && square * 3 > round, "{round} {square}");
+}
