@@ -43,7 +43,7 @@ impl From<DMat4> for Affine {
     }
 }
 
-/// The matrix of a transform as written; of a moving one, its first step.
+/// The matrix of a transform as written; of a moving one, its first step ([`crate::motion`] knows the others).
 pub(crate) fn matrix(kind: &TransformKind) -> DMat4 {
     match kind {
         TransformKind::Ops(ops) => ops.iter().fold(DMat4::IDENTITY, |m, op| op_matrix(op) * m),

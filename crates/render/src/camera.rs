@@ -3,13 +3,16 @@
 use glam::{DMat4, DVec3, Vec3};
 use jaspe_scene::description::{Camera as Description, Lens, View};
 
-use crate::affine::{self, Affine};
+use crate::affine::Affine;
 use crate::math;
+use crate::motion::{Motion, Shutter};
 
 /// A camera ready to send rays.
 #[derive(Debug, Clone)]
 pub(crate) struct Camera {
     world_from_camera: Affine,
+    /// Where the camera is at each time, if it moves while the shutter is open.
+    moving: Option<Box<(Motion, Shutter)>>,
     lens: Lens,
     /// Half the image plane's width and height, at distance 1 or at the focal distance.
     half: [f32; 2],
@@ -21,7 +24,9 @@ pub(crate) struct Camera {
 impl Camera {
     /// `size` in pixels.
     pub fn new(description: &Description, size: [u32; 2]) -> Camera {
-        let world_from_camera = view_matrix(&description.view);
+        let (motion, shutter) = (view_motion(&description.view), Shutter::of(Some(description)));
+        let world_from_camera = motion.at(shutter.middle()).into();
+        let moving = (shutter.has_duration() && !motion.is_still()).then(|| Box::new((motion, shutter)));
         let half = |fov: f32, aspect: f32, distance: f32| {
             let width = (math::tan_degrees(f64::from(fov) * 0.5) * f64::from(distance)) as f32;
             [width, width / aspect]
@@ -40,7 +45,7 @@ impl Camera {
             Lens::Spherical | Lens::Fisheye => ([1.0; 2], Vec::new()),
         };
         let size = size.map(|s| s as f32);
-        Camera { world_from_camera: world_from_camera.into(), lens: description.lens, half, size, corners }
+        Camera { world_from_camera, moving, lens: description.lens, half, size, corners }
     }
 
     /// Whether rays need a lens sample.
@@ -48,9 +53,14 @@ impl Camera {
         matches!(self.lens, Lens::Thinlens { lensr, .. } if lensr > 0.0)
     }
 
+    /// Whether rays need a time sample.
+    pub fn is_moving(&self) -> bool {
+        self.moving.is_some()
+    }
+
     /// Origin and unit direction of the ray through a raster position, in pixels from the top left; `None` where the
-    /// lens sees nothing (format reference, §3.2).
-    pub fn ray(&self, x: f32, y: f32, lens: [f32; 2]) -> Option<(Vec3, Vec3)> {
+    /// lens sees nothing (format reference, §3.2). `time` goes from 0 to 1.
+    pub fn ray(&self, x: f32, y: f32, lens: [f32; 2], time: f32) -> Option<(Vec3, Vec3)> {
         let [width, height] = self.size;
         let y = height - y;
         // Sunflow: the divisors are one less than the size, which moves the axis half a pixel to the left and down.
@@ -86,8 +96,12 @@ impl Camera {
                 (Vec3::ZERO, Vec3::new(cx, cy, -rest.sqrt()))
             }
         };
-        let direction = self.world_from_camera.vector(direction).normalize_or_zero();
-        (direction != Vec3::ZERO).then(|| (self.world_from_camera.point(origin), direction))
+        let world_from_camera = match &self.moving {
+            Some(moving) => moving.0.at(moving.1.moment(f64::from(time))).into(),
+            None => self.world_from_camera,
+        };
+        let direction = world_from_camera.vector(direction).normalize_or_zero();
+        (direction != Vec3::ZERO).then(|| (world_from_camera.point(origin), direction))
     }
 
     /// A point of the unit lens: the concentric map of the square to the disk ([Shirley, Chiu 1997] "A Low Distortion
@@ -112,9 +126,9 @@ impl Camera {
 }
 
 /// Camera space (down −Z, +X right, +Y up) to world.
-fn view_matrix(view: &View) -> DMat4 {
+fn view_motion(view: &View) -> Motion {
     match view {
-        View::Transform(transform) => affine::matrix(&transform.kind),
+        View::Transform(transform) => Motion::new(&transform.kind),
         View::LookAt { eye, target, up } => {
             let vec = |v: &[f32; 3]| Vec3::from_array(*v).as_dvec3();
             let (eye, target, up) = (vec(eye), vec(target), vec(up));
@@ -123,7 +137,7 @@ fn view_matrix(view: &View) -> DMat4 {
             let fallback = if w.x.abs() < 0.9 { DVec3::X } else { DVec3::Y };
             let u = up.cross(w).try_normalize().unwrap_or_else(|| fallback.cross(w).normalize());
             let v = w.cross(u);
-            DMat4::from_cols(u.extend(0.0), v.extend(0.0), w.extend(0.0), eye.extend(1.0))
+            Motion::still(DMat4::from_cols(u.extend(0.0), v.extend(0.0), w.extend(0.0), eye.extend(1.0)))
         }
     }
 }

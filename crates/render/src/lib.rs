@@ -47,6 +47,7 @@ mod material;
 mod math;
 mod mesh_file;
 mod modifier;
+mod motion;
 mod options;
 mod picture;
 mod report;

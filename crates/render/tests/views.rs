@@ -98,3 +98,20 @@ fn a_lens_is_sharp_at_its_distance_and_blurs_as_its_shape_says() {
     // A square in a circle has 2/π of its area.
     assert!(round > square && square * 3 > round, "{round} {square}");
 }
+
+#[test]
+fn a_moving_camera_blurs_and_a_moving_object_stands_at_its_time() {
+    let steps = "steps 2 times 0 1 { eye -1 0 5 target -1 0 0 up 0 1 0 } { eye 1 0 5 target 1 0 0 up 0 1 0 }";
+    let ball = "object { shader red type sphere c 0 0 0 r .2 }";
+    let blurred = film(&format!("type pinhole shutter 0 1 {steps} fov 40 aspect 1"), ball);
+    let row = |film: &Film| (0..64).filter(|x| film.pixels[32 * 64 + x][0] > 0.0).count();
+    // The ball is 7 pixels wide and passes over 35.
+    assert!((36..=46).contains(&row(&blurred)), "{}", row(&blurred));
+    let still = film(&format!("type pinhole {steps} fov 40 aspect 1"), ball);
+    assert!((6..=10).contains(&row(&still)) && still.pixels[32 * 64 + 49][0] == 1.0, "as at time 0, at the left");
+
+    let moving =
+        "object { shader red transform steps 3 times -1 1 { translate -1 0 0 } { } { translate 1 0 0 } type sphere }";
+    let shown = film("type pinhole eye 0 0 50 target 0 0 0 up 0 1 0 fov 40 aspect 1", moving);
+    assert!(shown.pixels[32 * 64 + 31][0] > 0.9, "time 0 is the middle step");
+}

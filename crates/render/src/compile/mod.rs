@@ -18,6 +18,7 @@ use crate::environment::Environment;
 use crate::filter::FilterSampler;
 use crate::geometry::{Geometry, Plan};
 use crate::light::Light;
+use crate::motion::Shutter;
 use crate::options::{CompileOptions, RenderOptions};
 use crate::report::{Grid, Report, ReportCamera, ReportLight};
 use crate::sampler::SampleKey;
@@ -62,6 +63,8 @@ pub struct Compilation {
     pub diagnostics: Diagnostics,
 }
 
+/// The dimension of the time of a sample, out of the way of those of its path.
+const TIME: u32 = u32::MAX;
 /// Sunflow's picture size where the scene names none.
 const DEFAULT_SIZE: [u32; 2] = [640, 480];
 
@@ -95,7 +98,8 @@ impl CompiledScene {
                         (_, true) => filter.sample(key.pair(0)),
                     };
                     let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
-                    let ray = camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, lens);
+                    let time = if camera.is_moving() { key.pair(TIME)[0] } else { 0.5 };
+                    let ray = camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, lens, time);
                     samples.set(i, ray, key, weight);
                 }
             }
@@ -125,7 +129,10 @@ pub fn compile(scene: &Scene, loader: &dyn Loader, options: &CompileOptions) -> 
     };
     let mut plan = Plan::default();
     let (lights, surroundings) = lit.show(&mut plan);
-    let planned = objects::compile(&shape::Sources { scene, loader }, dialect, plan, &mut materials, &mut diagnostics);
+    let shutter = Shutter::of(scene.cameras.last());
+    unsupported::report_motion(scene, shutter, &mut diagnostics);
+    let sources = shape::Sources { scene, loader, time: shutter.middle() };
+    let planned = objects::compile(&sources, dialect, plan, &mut materials, &mut diagnostics);
     let Some(camera) = scene.cameras.last() else {
         diagnostics.push(Diagnostic::error(None, "the scene has no camera").hint(
             "add one, for instance `camera { type pinhole eye 0 0 10 target 0 0 0 up 0 1 0 fov 60 aspect 1.333 }`",
@@ -135,7 +142,7 @@ pub fn compile(scene: &Scene, loader: &dyn Loader, options: &CompileOptions) -> 
     let scene_size = scene.image.resolution.map_or(DEFAULT_SIZE, |size| size.value);
     let size = options.resolution.unwrap_or(scene_size);
     let meaning = match dialect {
-        Dialect::Sunflow => sunflow(scene, camera, size, (lights, surroundings), &mut diagnostics),
+        Dialect::Sunflow => sunflow(scene, camera, size, (lights, surroundings)),
         Dialect::Report => {
             let camera = report_camera(camera, scene_size[0], size, &mut diagnostics);
             report(scene, camera, planned.plane_normals, &planned.geometry, size)
@@ -179,16 +186,7 @@ fn sunflow(
     camera: &CameraDescription,
     size: [u32; 2],
     (lights, surroundings): (Vec<Light>, Option<Arc<Environment>>),
-    diagnostics: &mut Diagnostics,
 ) -> Meaning {
-    if let Some(shutter) = camera.shutter
-        && shutter.value[1] > shutter.value[0]
-    {
-        diagnostics.push(
-            Diagnostic::warning(shutter.span, "motion is not rendered yet: everything stands as at the first step")
-                .hint("leave `shutter` out for the same picture without this warning"),
-        );
-    }
     let depth = |written: Option<jaspe_scene::Spanned<u32>>, default: u32| {
         written.map_or(default, |depth| depth.value).min(255) as u8
     };
@@ -296,7 +294,7 @@ fn note_darkness(scene: &Scene, compiled: &CompiledScene, diagnostics: &mut Diag
     samples.resize((PROBE[0] * PROBE[1]) as usize);
     for i in 0..PROBE[0] * PROBE[1] {
         let at = |k: usize, cell: u32| (cell as f32 + 0.5) / PROBE[k] as f32 * compiled.size[k] as f32;
-        let ray = camera.ray(at(0, i % PROBE[0]), at(1, i / PROBE[0]), [0.5; 2]);
+        let ray = camera.ray(at(0, i % PROBE[0]), at(1, i / PROBE[0]), [0.5; 2], 0.5);
         samples.set(i as usize, ray, SampleKey::new(i, 0, 0, RenderOptions::default().seed), 1.0);
     }
     let mut workspace = Workspace::default();

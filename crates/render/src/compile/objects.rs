@@ -13,6 +13,7 @@ use super::shape::Sources;
 use crate::affine;
 use crate::geometry::{Geometry, MeshShape, PerVertex, Placement, Plan};
 use crate::material::BLACK;
+use crate::motion::Motion;
 
 /// The geometry of a scene, and what one dialect needs besides.
 pub(super) struct Planned {
@@ -29,7 +30,7 @@ pub(super) fn compile(
     diagnostics: &mut Diagnostics,
 ) -> Planned {
     let scene = sources.scene;
-    let mut compiler = Compiler { dialect, materials, diagnostics, missing: HashSet::new() };
+    let mut compiler = Compiler { dialect, time: sources.time, materials, diagnostics, missing: HashSet::new() };
     let mut appearances: HashMap<&str, Vec<&Instance>> = HashMap::new();
     let known: HashSet<&str> = scene.objects.iter().filter_map(|o| o.name.as_ref().map(|n| n.value.as_str())).collect();
     for instance in &scene.instances {
@@ -100,6 +101,8 @@ fn add(plan: &mut Plan, object: &Object, places: &[Placement], dialect: Dialect,
 
 struct Compiler<'a, 'm> {
     dialect: Dialect,
+    /// The moment in which what moves is shown.
+    time: f64,
     materials: &'a mut Materials<'m>,
     diagnostics: &'a mut Diagnostics,
     /// Names of shaders and modifiers that were reported already.
@@ -129,7 +132,7 @@ impl Compiler<'_, '_> {
         let matrix = match (transform, self.dialect) {
             (None, _) => base,
             (Some(transform), Dialect::Report) => report_matrix(&transform.kind, geometry, base),
-            (Some(transform), Dialect::Sunflow) => affine::matrix(&transform.kind) * base,
+            (Some(transform), Dialect::Sunflow) => Motion::new(&transform.kind).at(self.time) * base,
         };
         let place = Placement::new(matrix, materials);
         if place.is_none() {

@@ -180,7 +180,13 @@ impl Geometry {
                 let local = object.object_from_world.point(point);
                 Some(object.world_from_object.vector(Vec3::new(-local.y, local.x, 0.0)))
             }
-            Shape::Plane(_) | Shape::Spheres(_) | Shape::Analytic(_) => None,
+            Shape::Plane(_) | Shape::Spheres(_) => None,
+            Shape::Analytic(index) => {
+                let local = object.object_from_world.point(point);
+                let shape = &self.tree.analytic.shapes[index as usize];
+                let tangent = shape.tangent(hit.id.index as usize, [hit.u, hit.v], local)?;
+                Some(object.world_from_object.vector(tangent))
+            }
             Shape::Mesh(index) | Shape::MeshInstance(index) => {
                 let [uv0, uv1, uv2] = self.meshes[index as usize].triangle_uvs(hit.id.index as usize)?;
                 let [v0, v1, v2] = self.triangle(hit)?;

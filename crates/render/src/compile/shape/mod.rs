@@ -20,6 +20,8 @@ use crate::mesh_file;
 pub(super) struct Sources<'a> {
     pub scene: &'a Scene,
     pub loader: &'a dyn Loader,
+    /// The moment in which what moves is shown.
+    pub time: f64,
 }
 
 impl Sources<'_> {
@@ -163,7 +165,9 @@ mod tests {
 
     fn mesh(geometry: &Geometry) -> MeshShape {
         let (scene, loader) = (Scene::default(), jaspe_scene::MemoryLoader::default());
-        Sources { scene: &scene, loader: &loader }.mesh(geometry, &mut Diagnostics::default()).expect("a mesh")
+        Sources { scene: &scene, loader: &loader, time: 0.0 }
+            .mesh(geometry, &mut Diagnostics::default())
+            .expect("a mesh")
     }
 
     fn bounds(mesh: &MeshShape) -> (Vec3, Vec3) {

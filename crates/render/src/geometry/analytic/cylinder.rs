@@ -39,6 +39,10 @@ impl Analytic for Cylinder {
         let around = math::atan2(p.y, p.x) / std::f32::consts::TAU;
         Vec2::new(if around < 0.0 { around + 1.0 } else { around }, (p.z + 1.0) * 0.5)
     }
+
+    fn tangent(&self, _: usize, _: [f32; 2], _: Vec3) -> Option<Vec3> {
+        Some(Vec3::Z)
+    }
 }
 
 #[cfg(test)]

@@ -144,6 +144,11 @@ impl Analytic for Flake {
     fn uv(&self, _: usize, uv: [f32; 2], _: Vec3) -> Vec2 {
         sphere_uv(unfold(uv).normalize_or(DVec3::Z).as_vec3())
     }
+
+    fn tangent(&self, _: usize, uv: [f32; 2], _: Vec3) -> Option<Vec3> {
+        let outward = unfold(uv).as_vec3();
+        Some(Vec3::new(-outward.y, outward.x, 0.0))
+    }
 }
 
 /// A direction as two numbers from −1 to 1: the octahedron, unfolded onto a square ([Cigolle et al. 2014] "A Survey of Efficient

@@ -28,7 +28,7 @@ impl Hair {
     }
 
     /// The direction of the strand, blended with that of the neighbours towards the joints within the strand.
-    fn tangent(&self, part: usize, along: f64) -> DVec3 {
+    fn strand(&self, part: usize, along: f64) -> DVec3 {
         let place = part % self.segments;
         let own = self.direction(part);
         let other = match (along < 0.5, place) {
@@ -76,13 +76,17 @@ impl Analytic for Hair {
     }
 
     fn surface(&self, part: usize, ray: &LocalRay, meeting: &Meeting) -> (DVec3, DVec3) {
-        let tangent = self.tangent(part, f64::from(meeting.u));
+        let tangent = self.strand(part, f64::from(meeting.u));
         let towards = -ray.direction;
         (ray.at(meeting.t), towards - tangent * towards.dot(tangent))
     }
 
     fn uv(&self, part: usize, [u, _]: [f32; 2], _: Vec3) -> Vec2 {
         Vec2::new(0.0, ((part % self.segments) as f32 + u) / self.segments as f32)
+    }
+
+    fn tangent(&self, part: usize, [u, _]: [f32; 2], _: Vec3) -> Option<Vec3> {
+        Some(self.strand(part, f64::from(u)).as_vec3())
     }
 
     fn is_flat(&self) -> bool {
@@ -143,9 +147,9 @@ mod tests {
     #[test]
     fn the_tangent_turns_at_the_joints_of_a_strand() {
         let hair = strand();
-        assert_eq!(hair.tangent(2, 0.1), DVec3::Z);
-        assert!(hair.tangent(2, 1.0).distance(DVec3::new(0.0, 1.0, 1.0).normalize()) < 1e-12);
-        assert!(hair.tangent(3, 0.0).distance(DVec3::new(0.0, 1.0, 1.0).normalize()) < 1e-12);
-        assert_eq!(hair.tangent(3, 0.9), DVec3::Y);
+        assert_eq!(hair.strand(2, 0.1), DVec3::Z);
+        assert!(hair.strand(2, 1.0).distance(DVec3::new(0.0, 1.0, 1.0).normalize()) < 1e-12);
+        assert!(hair.strand(3, 0.0).distance(DVec3::new(0.0, 1.0, 1.0).normalize()) < 1e-12);
+        assert_eq!(hair.strand(3, 0.9), DVec3::Y);
     }
 }

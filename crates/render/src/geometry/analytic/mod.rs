@@ -65,6 +65,11 @@ pub(crate) trait Analytic: Debug + Send + Sync {
         Vec2::ZERO
     }
 
+    /// The direction along which bumps and highlights are laid out, of any length, if the shape has one.
+    fn tangent(&self, _part: usize, _uv: [f32; 2], _point: Vec3) -> Option<Vec3> {
+        None
+    }
+
     /// Whether a ray that leaves a part in a straight line cannot meet that part again.
     fn is_flat(&self) -> bool {
         false
