@@ -5,7 +5,6 @@ object { shader a type teapot subdivs 0 }
 object { shader a type gumbo subdivs 5000 }
 # error: 1-6 `bezier-mesh` lacks `n`
 # hint: add `n 4 4`
-# error: 36-41 `n` must stand before `points`, and tell how many there are
 object { shader a type bezier-mesh points 0 0 0 }
 # error: 42-47 `points` needs 60 numbers, found 3
 # label: [4] 55-55 the list ends here

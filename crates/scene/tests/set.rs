@@ -116,3 +116,12 @@ fn any_text_is_survived() {
         assert!(set(&mut scene(), text).is_err(), "{text}");
     }
 }
+
+#[test]
+fn textures_are_set_like_shaders() {
+    let mut scene = clean("texture { name veins type marble depth 4 } shader { name s type diffuse texture veins }");
+    set(&mut scene, "veins.depth=9").expect("it has a depth");
+    assert_eq!(scene.textures[0].settings[0].value, SettingValue::Int(9));
+    let refused = set(&mut scene, "vein.depth=9").expect_err("there is none of that name");
+    assert_eq!(refused.iter().next().expect("a message").hints, ["did you mean `veins`?"]);
+}

@@ -128,6 +128,13 @@ impl Parser<'_> {
         Ok(list.values)
     }
 
+    /// As many points as there are.
+    pub(super) fn any_points(&mut self, key: Span) -> Parsed<Vec<[f32; 3]>> {
+        let list = self.list::<f32, 3>(key, 16, number::float::<f32>)?;
+        let whole = 3 * list.values.len();
+        if list.rest > 0 { Err(self.wrong_count(&list, whole, whole + list.rest)) } else { Ok(list.values) }
+    }
+
     /// `count` numbers, three of which make a point.
     pub(super) fn flat_point_list(&mut self, key: Span, count: usize) -> Parsed<Vec<[f32; 3]>> {
         let list = self.list::<f32, 3>(key, count / 3, number::float::<f32>)?;

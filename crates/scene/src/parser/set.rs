@@ -1,11 +1,11 @@
-//! `NAME.KEY=VALUE`: changes one keyword of one shader after reading, with the same tables as the file.
+//! `NAME.KEY=VALUE`: changes one keyword of one shader or texture after reading, with the same tables as the file.
 
 use std::sync::Arc;
 
 use super::shader::{self, Draft, Type};
 use super::value::shorten;
 use super::{Context, Parser};
-use crate::description::{Name, Scene, ShaderKind};
+use crate::description::{Name, Scene, ShaderKind, Texture};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::lexer::{Lexer, Syntax};
 use crate::source::MemoryLoader;
@@ -14,7 +14,7 @@ use crate::suggest;
 /// What messages call the text of an assignment.
 const SOURCE: &str = "--set";
 
-/// Sets a keyword of a named shader, as if its block in the scene said so: `set(scene, "floor.depth=5")`.
+/// Sets a keyword of a named shader or texture, as if its block in the scene said so: `set(scene, "floor.depth=5")`.
 ///
 /// Colours are written as in a scene, with blanks or commas (`1,0.5,0` is linear light), or as `#rrggbb`. The text of
 /// the assignment becomes one of the scene's sources, so that messages can show it.
@@ -28,26 +28,46 @@ pub fn set(scene: &mut Scene, assignment: &str) -> Result<(), Diagnostics> {
     parser.file = scene.sources.add(SOURCE.into(), parser.bytes.clone());
     parser.syntax = Syntax::Assignment;
     match assign(&mut parser, scene, assignment) {
-        Some((index, kind)) if !parser.diagnostics.has_errors() => {
-            scene.shaders[index].kind = kind;
+        Some((target, kind)) if !parser.diagnostics.has_errors() => {
+            match (target, kind) {
+                (Target::Shader(index), kind) => scene.shaders[index].kind = kind,
+                (Target::Texture(index), ShaderKind::Procedural { settings, .. }) => {
+                    scene.textures[index].settings = settings;
+                }
+                (Target::Texture(_), _) => {}
+            }
             Ok(())
         }
         _ => Err(parser.diagnostics),
     }
 }
 
-/// The shader that changes and what it becomes; otherwise the reason is among the parser's diagnostics.
-fn assign(parser: &mut Parser<'_>, scene: &Scene, assignment: &str) -> Option<(usize, ShaderKind)> {
+/// What changes, by its index.
+#[derive(Debug, Clone, Copy)]
+enum Target {
+    Shader(usize),
+    Texture(usize),
+}
+
+/// What changes and what it becomes; otherwise the reason is among the parser's diagnostics.
+fn assign(parser: &mut Parser<'_>, scene: &Scene, assignment: &str) -> Option<(Target, ShaderKind)> {
     let Some((path, _)) = assignment.split_once('=') else {
         let diagnostic = Diagnostic::error(place(parser, 0, assignment), "expected `NAME.KEY=VALUE`");
         parser.diagnostics.push(diagnostic.hint("for example `floor.depth=5`"));
         return None;
     };
-    let (index, key) = find(parser, scene, path)?;
-    let shader = &scene.shaders[index];
+    let (target, key) = find(parser, scene, path)?;
     let span = place(parser, path.len() - key.len(), key);
-    let Some((kind, mut draft)) = open(&shader.kind) else {
-        let message = format!("the type of shader `{}` is not supported yet", shorten(&shader.name.value));
+    let (block, opened) = match target {
+        Target::Shader(index) => (scene.shaders[index].span, open(&scene.shaders[index].kind)),
+        Target::Texture(index) => {
+            let Texture { declaration, settings, span, .. } = scene.textures[index].clone();
+            (span, open(&ShaderKind::Procedural { declaration, settings }))
+        }
+    };
+    let Some((kind, mut draft)) = opened else {
+        let message =
+            format!("`{}` is written in Java, which cannot be changed", shorten(&path[..path.len() - key.len() - 1]));
         parser.diagnostics.push(Diagnostic::error(span, message));
         return None;
     };
@@ -68,18 +88,23 @@ fn assign(parser: &mut Parser<'_>, scene: &Scene, assignment: &str) -> Option<(u
         parser.diagnostics.push(Diagnostic::error(parser.span(surplus), message));
         return None;
     }
-    Some((index, kind.build(draft, shader.span)?))
+    Some((target, kind.build(draft, block)?))
 }
 
-/// The shader whose name starts `path`, and the keyword that remains. Both may contain dots.
-fn find<'a>(parser: &mut Parser<'_>, scene: &Scene, path: &'a str) -> Option<(usize, &'a str)> {
+/// The shader, or else the texture, whose name starts `path`, and the keyword that remains. Both may contain dots.
+fn find<'a>(parser: &mut Parser<'_>, scene: &Scene, path: &'a str) -> Option<(Target, &'a str)> {
     let splits = path.match_indices('.').map(|(dot, _)| (&path[..dot], &path[dot + 1..]));
-    let named = |name: &str| scene.shaders.iter().position(|shader| shader.name.value == name);
+    let named = |name: &str| {
+        let shader = scene.shaders.iter().position(|shader| shader.name.value == name).map(Target::Shader);
+        let texture = || scene.textures.iter().position(|texture| texture.name.value == name).map(Target::Texture);
+        shader.or_else(texture)
+    };
     if let Some(found) = splits.clone().find_map(|(name, key)| Some((named(name)?, key))) {
         return Some(found);
     }
     let name = splits.map(|(name, _)| name).next().unwrap_or(path);
-    let known = || scene.shaders.iter().map(|shader| shader.name.value.as_str());
+    let textures = scene.textures.iter().map(|texture| texture.name.value.as_str());
+    let known = || scene.shaders.iter().map(|shader| shader.name.value.as_str()).chain(textures.clone());
     let message = format!("there is no shader `{}`", shorten(name));
     let diagnostic = Diagnostic::error(place(parser, 0, name), message);
     parser.diagnostics.push(match (suggest::nearest(name, known()), scene.shaders.len()) {

@@ -92,9 +92,8 @@ pub(super) const TYPES: &[ObjectType] = &[
                 let count = d.shape.size.map_or(0, |size| size.value[0] as usize * size.value[1] as usize);
                 match d.shape.size {
                     Some(_) => put(&mut d.shape.points, p.point_list(key, count)),
-                    None => {
-                        Err(p.refuse(key, "`n` must stand before `points`, and tell how many there are".to_owned()))
-                    }
+                    // How many there should be is told later.
+                    None => put(&mut d.shape.points, p.any_points(key)),
                 }
             }),
             SUBDIVS,
@@ -186,6 +185,13 @@ fn bezier_mesh(parser: &mut Parser<'_>, draft: &mut Draft, outcome: &Outcome, he
     parser.require("bezier-mesh", outcome, head, &[(&["n"], "n 4 4"), (&["points"], "points X Y Z …")]);
     let (size, points) = (draft.shape.size?, draft.shape.points.take()?);
     let net = BezierNet { size: size.value, wrap: draft.shape.wrap.unwrap_or_default(), points };
+    let needed = u64::from(net.size[0]) * u64::from(net.size[1]);
+    if net.points.len() as u64 != needed {
+        let [u, v] = net.size;
+        let message = format!("a net of {u} × {v} needs {needed} points, found {}", net.points.len());
+        parser.diagnostics.push(Diagnostic::error(outcome.place("points"), message));
+        return None;
+    }
     for (axis, fits) in [0, 1].map(|axis| (axis, if net.wrap[axis] { 0 } else { 1 })) {
         if net.size[axis] % 3 != fits || net.patches()[axis] == 0 {
             let message = format!("{} points do not make patches", net.size[axis]);
