@@ -71,6 +71,7 @@ mod seed;
 pub mod simd;
 mod sum;
 mod table;
+mod warp;
 
 pub use basis::Basis;
 pub use basis::cellular::{Cellular, Feature, Metric};
@@ -80,3 +81,4 @@ pub use number::{Dual, Integer, Mask, Real};
 pub use seed::permutation;
 pub use sum::{Combine, Sum};
 pub use table::{ByteTable, FloatTable, PairTable};
+pub use warp::{Field, Warp};
