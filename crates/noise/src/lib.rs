@@ -60,6 +60,7 @@
 #![deny(unsafe_code)]
 
 mod basis;
+mod declaration;
 mod dispatch;
 mod filter;
 mod grid;
@@ -75,6 +76,7 @@ mod warp;
 
 pub use basis::Basis;
 pub use basis::cellular::{Cellular, Feature, Metric};
+pub use declaration::{Declaration, Statistics};
 pub use grid::Grid;
 pub use noise::{Noise, PeriodError};
 pub use number::{Dual, Integer, Mask, Real};

@@ -88,7 +88,7 @@ impl Noise {
         self
     }
 
-    /// The least and the largest value.
+    /// Bounds of the values in up to three dimensions: see [`Basis::declaration`] for more.
     pub fn range(&self) -> [f64; 2] {
         let largest = match (self.basis, self.cellular.feature) {
             (Basis::Improved, _) => 1.04,

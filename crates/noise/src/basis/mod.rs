@@ -40,15 +40,7 @@ impl Basis {
 
     /// The word for it in scenes and on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Basis::Improved => "improved",
-            Basis::Classic => "classic",
-            Basis::Lattice => "lattice",
-            Basis::Value => "value",
-            Basis::Simplex => "simplex",
-            Basis::Cellular => "cellular",
-            Basis::White => "white",
-        }
+        self.declaration().name
     }
 
     /// The basis of this name.

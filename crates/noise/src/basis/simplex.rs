@@ -15,8 +15,8 @@ use crate::number::{Dual, Integer, Real};
 /// at 0.013 007 2, halfway between two corners, many times over.
 const SCALE: f64 = 76.88;
 
-/// The same for four dimensions.
-const SCALE_FOUR: f64 = 62.0;
+/// In four dimensions the largest of twenty million values of 64 seeds comes within 5 % of 1 by this.
+const SCALE_FOUR: f64 = 60.0;
 
 /// The noise at a point; below three dimensions the other coordinates are 0.
 #[inline(always)]

@@ -29,12 +29,7 @@ impl Combine {
 
     /// The word for it in scenes.
     pub fn name(self) -> &'static str {
-        match self {
-            Combine::Plain => "plain",
-            Combine::Absolute => "absolute",
-            Combine::Ridged => "ridged",
-            Combine::Hybrid => "hybrid",
-        }
+        self.declaration().name
     }
 
     /// The way of this name.
