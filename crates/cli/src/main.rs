@@ -55,6 +55,7 @@ enum Command {
     Texture(command::texture::Texture),
     Noise(command::noise::Noise),
     Compare(command::compare::Compare),
+    Bench(command::bench::Bench),
 }
 
 /// How a command ended, when nothing went wrong with using it.
@@ -75,6 +76,7 @@ fn main() -> ExitCode {
         Command::Texture(texture) => texture.run(),
         Command::Noise(noise) => noise.run(),
         Command::Compare(compare) => compare.run(),
+        Command::Bench(bench) => bench.run(),
     };
     match result {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

@@ -35,11 +35,39 @@ fn two_coordinates_are_the_slice_at_zero() {
 #[test]
 fn options_change_the_value() {
     let plain = value(&["improved", "0.3", "0.4", "0.6"]);
-    for options in [["--seed", "7"], ["--octaves", "3"], ["--sum", "turbulence"], ["--sum", "fbm"]] {
+    for options in [
+        ["--seed", "7"],
+        ["--octaves", "3"],
+        ["--sum", "turbulence"],
+        ["--sum", "fbm"],
+        ["--sum", "ridged"],
+        ["--sum", "hybrid"],
+        ["--octaves", "1.5"],
+    ] {
         assert_ne!(value(&[&["improved", "0.3", "0.4", "0.6"], &options[..]].concat()), plain, "{options:?}");
     }
     let here = value(&["lattice", "0.25", "0.5", "0.75", "--period", "4,4,4"]);
     assert_eq!(value(&["lattice", "4.25", "-3.5", "8.75", "--period", "4,4,4"]), here);
+}
+
+#[test]
+fn there_are_one_to_four_dimensions() {
+    assert_eq!(value(&["improved", "1.3"]), value(&["improved", "1.3", "0", "0"]));
+    assert_ne!(value(&["improved", "1.3", "0.2", "0.7", "0.4"]), value(&["improved", "1.3", "0.2", "0.7"]));
+    assert_eq!(value(&["white", "1.3", "0.2", "0.7", "0.4", "--gradient"]).split_whitespace().count(), 5);
+    // At the middle of a cell of feature points without jitter, F1 is 0 and F2 a whole cell, whatever the metric.
+    let middle = |options: &[&str]| value(&[&["cellular", "0.5", "1.5", "-2.5", "--jitter", "0"], options].concat());
+    assert_eq!((middle(&[]), middle(&["--feature", "f2"])), ("0\n".to_owned(), "1\n".to_owned()));
+    assert_eq!(middle(&["--feature", "f2-f1", "--metric", "manhattan"]), "1\n");
+}
+
+#[test]
+fn a_warp_of_nothing_changes_nothing() {
+    let plain = value(&["simplex", "0.3", "0.4", "0.6"]);
+    assert_eq!(value(&["simplex", "0.3", "0.4", "0.6", "--warp", "0"]), plain);
+    let once = value(&["simplex", "0.3", "0.4", "0.6", "--warp", "0.5"]);
+    assert_ne!(once, plain);
+    assert_ne!(value(&["simplex", "0.3", "0.4", "0.6", "--warp", "0.5", "--warp", "0.5"]), once);
 }
 
 #[test]
@@ -114,7 +142,9 @@ fn a_reader_that_leaves_is_no_error() {
 fn wrong_points_and_names_are_usage_errors() {
     for (arguments, message) in [
         (&["improved", "1", "two", "3"][..], "found `two`"),
-        (&["improved", "1"], "expected two or three coordinates, found 1"),
+        (&["improved", "1", "2", "3", "4", "5"], "unexpected"),
+        (&["improved", "1", "2", "3", "--gain", "-1"], "expected a number from 0 to 64"),
+        (&["cellular", "1", "2", "3", "--feature", "f3"], "f2-f1"),
         (&["improoved", "1", "2", "3"], "improved"),
         (&["improved", "1", "2", "3", "--octaves", "0"], "--octaves"),
         (&["improved", "1", "2", "3", "--period", "4,x"], "PX,PY,PZ"),

@@ -4,7 +4,7 @@ use std::io::{self, BufRead, BufReader, BufWriter, Read as _, Write};
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
-use jaspe_noise::{Basis, Combine, Noise as Lattice, Sum};
+use jaspe_noise::{Basis, Cellular, Combine, Feature, Field, Metric, Noise as Lattice, Sum, Warp};
 
 use crate::Outcome;
 use crate::arguments::period;
@@ -13,7 +13,7 @@ use crate::show::shortest;
 
 /// Print the value of a noise at a point, in double precision.
 ///
-/// Two coordinates are the slice z = 0 of three. `-` in place of the point reads points from standard input, one per
+/// One and two coordinates are slices of three at zero; four have noises of their own. `-` in place of the point reads points from standard input, one per
 /// line, and prints one line for each.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
@@ -23,6 +23,9 @@ Examples:
   jaspe noise classic 1.5 2.5 --seed 7
   jaspe noise improved 1.5 2.5 3.5 --sum turbulence --octaves 9
   jaspe noise lattice 0.3 0.3 0.3 --period 4,4,4 --gradient
+  jaspe noise cellular 0.3 0.7 1.9 --feature f2-f1 --metric manhattan --jitter 0.8
+  jaspe noise simplex 0.3 0.7 1.9 0.2 --sum ridged --octaves 4.5 --lacunarity 2.1
+  jaspe noise value 0.3 0.7 1.9 --warp 0.5 --warp 0.3
   seq 0 0.1 10 | awk '{ print $1, 0, 0 }' | jaspe noise improved -")]
 pub struct Noise {
     /// The noise
@@ -30,20 +33,45 @@ pub struct Noise {
     basis: String,
 
     /// The point, or `-` to read points from standard input
-    #[arg(value_name = "X Y [Z]", required = true, num_args = 1..=3, allow_negative_numbers = true)]
+    #[arg(value_name = "X [Y [Z [W]]]", required = true, num_args = 1..=4, allow_negative_numbers = true)]
     point: Vec<String>,
 
-    /// Add up octaves of doubling frequency and halving amplitude
+    /// Add up octaves of rising frequency and falling amplitude
     #[arg(long, value_enum, value_name = "SUM")]
     sum: Option<SumName>,
 
-    /// How many octaves are added up [default: 9 with --sum]; without --sum, they are added as fbm
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
-    octaves: Option<u32>,
+    /// How many octaves are added up [default: 9 with --sum]; without --sum, they are added as fbm. The last one fades in
+    /// with the part past the point
+    #[arg(long, value_name = "N", value_parser = number_within::<1, 64>)]
+    octaves: Option<f64>,
+
+    /// The ratio between the frequencies of neighbouring octaves
+    #[arg(long, value_name = "L", default_value_t = 2.0, value_parser = number_within::<0, 64>)]
+    lacunarity: f64,
+
+    /// The ratio between the amplitudes of neighbouring octaves
+    #[arg(long, value_name = "G", default_value_t = 0.5, value_parser = number_within::<0, 64>)]
+    gain: f64,
 
     /// Another seed gives another noise; 0 is the published table
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
+
+    /// What cellular noise tells of its feature points
+    #[arg(long, value_enum, value_name = "FEATURE", default_value = "f1")]
+    feature: FeatureName,
+
+    /// How cellular noise measures distances
+    #[arg(long, value_enum, value_name = "METRIC", default_value = "euclidean")]
+    metric: MetricName,
+
+    /// How far the feature points of cellular noise stray from the middles of their cells
+    #[arg(long, value_name = "J", default_value_t = 1.0, value_parser = number_within::<0, 1>)]
+    jitter: f64,
+
+    /// Displace the point so far by the same field first; again for each time this is given
+    #[arg(long, value_name = "AMOUNT", allow_negative_numbers = true)]
+    warp: Vec<f64>,
 
     /// Repeat after so many cells along x, y and z; 0 leaves an axis at the table's 256
     #[arg(long, value_name = "PX,PY,PZ", value_parser = period)]
@@ -63,10 +91,47 @@ enum SumName {
     /// Its absolute value
     #[value(alias = "absolute")]
     Turbulence,
+    /// Ridges where it passes zero: Musgrave's ridged multifractal
+    Ridged,
+    /// Smooth valleys, rough heights: Musgrave's hybrid multifractal
+    Hybrid,
+}
+
+/// What cellular noise tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum FeatureName {
+    /// The distance to the nearest feature point
+    F1,
+    /// The distance to the second nearest one
+    F2,
+    /// The difference of both
+    #[value(name = "f2-f1")]
+    Difference,
+    /// A random number of the nearest one
+    Cell,
+}
+
+/// How cellular noise measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MetricName {
+    /// As the crow flies
+    Euclidean,
+    /// The sum of the distances along the axes
+    Manhattan,
+    /// The largest of them
+    Chebyshev,
+}
+
+/// A number from `LEAST` to `MOST`.
+fn number_within<const LEAST: i32, const MOST: i32>(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (f64::from(LEAST)..=f64::from(MOST)).contains(&number) => Ok(number),
+        _ => Err(format!("expected a number from {LEAST} to {MOST}")),
+    }
 }
 
 /// Octaves when there is a sum and nothing else is said: the default depth of the materials.
-const DEFAULT_OCTAVES: u32 = 9;
+const DEFAULT_OCTAVES: f64 = 9.0;
 
 /// Longer lines hold no point.
 const LONGEST_LINE: u64 = 4096;
@@ -74,13 +139,13 @@ const LONGEST_LINE: u64 = 4096;
 impl Noise {
     /// Prints the value, or the values.
     pub fn run(self) -> Result<Outcome, Failure> {
-        let sum = self.evaluation()?;
+        let field = self.evaluation()?;
         let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
         if self.point == ["-"] {
-            self.stream(&sum, io::stdin().lock(), &mut out)?;
+            self.stream(&field, io::stdin().lock(), &mut out)?;
         } else {
-            let line = self.line(&sum, self.point.iter().map(String::as_str)).map_err(|message| {
-                Failure::new(message).hint("give X Y Z or X Y, or `-` to read points from standard input")
+            let line = self.line(&field, self.point.iter().map(String::as_str)).map_err(|message| {
+                Failure::new(message).hint("give one to four coordinates, or `-` to read points from standard input")
             })?;
             writeln!(out, "{line}")?;
         }
@@ -89,25 +154,45 @@ impl Noise {
     }
 
     /// A plain noise is a sum of one octave.
-    fn evaluation(&self) -> Result<Sum, Failure> {
+    fn evaluation(&self) -> Result<Field, Failure> {
         let basis = Basis::from_name(&self.basis).expect("the parser accepts the names of bases only");
-        let mut noise = Lattice::new(basis, self.seed);
+        let metric = match self.metric {
+            MetricName::Euclidean => Metric::Euclidean,
+            MetricName::Manhattan => Metric::Manhattan,
+            MetricName::Chebyshev => Metric::Chebyshev,
+        };
+        let feature = match self.feature {
+            FeatureName::F1 => Feature::First,
+            FeatureName::F2 => Feature::Second,
+            FeatureName::Difference => Feature::Difference,
+            FeatureName::Cell => Feature::Cell,
+        };
+        let cellular = Cellular { metric, feature, jitter: self.jitter };
+        let mut noise = Lattice::new(basis, self.seed).with_cellular(cellular);
         if let Some(period) = self.period {
             noise = noise.with_period(period).map_err(|error| Failure::new(format!("--period: {error}")))?;
         }
         let octaves = match (self.octaves, self.sum) {
             (Some(octaves), _) => octaves,
             (None, Some(_)) => DEFAULT_OCTAVES,
-            (None, None) => 1,
+            (None, None) => 1.0,
         };
         let combine = match self.sum {
             Some(SumName::Turbulence) => Combine::Absolute,
+            Some(SumName::Ridged) => Combine::Ridged,
+            Some(SumName::Hybrid) => Combine::Hybrid,
             Some(SumName::Fbm) | None => Combine::Plain,
         };
-        Ok(Sum::new(noise, combine, octaves))
+        let sum = Sum::new(noise, combine, 0).with_octaves(octaves);
+        let sum = sum.with_lacunarity(self.lacunarity).with_gain(self.gain);
+        let field = self
+            .warp
+            .iter()
+            .fold(Field::from(sum.clone()), |source, &amount| Warp { source, by: sum.clone().into(), amount }.into());
+        Ok(field)
     }
 
-    fn stream(&self, sum: &Sum, input: impl io::Read, out: &mut impl Write) -> Result<(), Failure> {
+    fn stream(&self, field: &Field, input: impl io::Read, out: &mut impl Write) -> Result<(), Failure> {
         let mut input = BufReader::with_capacity(1 << 16, input);
         let mut line = Vec::new();
         for number in 1_u64.. {
@@ -122,7 +207,7 @@ impl Noise {
             if words.clone().next().is_none() {
                 continue;
             }
-            let values = self.line(sum, words).map_err(|message| Failure::new(format!("line {number}: {message}")));
+            let values = self.line(field, words).map_err(|message| Failure::new(format!("line {number}: {message}")));
             let values = values.inspect_err(|_| _ = out.flush())?;
             writeln!(out, "{values}")?;
             // Whoever waits for each answer before asking again shall get it.
@@ -134,23 +219,25 @@ impl Noise {
     }
 
     /// What is printed for a point.
-    fn line<'a>(&self, sum: &Sum, words: impl Iterator<Item = &'a str>) -> Result<String, String> {
+    fn line<'a>(&self, field: &Field, words: impl Iterator<Item = &'a str>) -> Result<String, String> {
         let number = |word: &str| word.parse::<f64>().map_err(|_| format!("expected a number, found `{word}`"));
         let point: Vec<f64> = words.map(number).collect::<Result<_, _>>()?;
         match point[..] {
-            [x, y] => Ok(self.print(sum, [x, y])),
-            [x, y, z] => Ok(self.print(sum, [x, y, z])),
-            _ => Err(format!("expected two or three coordinates, found {}", point.len())),
+            [x] => Ok(self.print(field, [x])),
+            [x, y] => Ok(self.print(field, [x, y])),
+            [x, y, z] => Ok(self.print(field, [x, y, z])),
+            [x, y, z, w] => Ok(self.print(field, [x, y, z, w])),
+            _ => Err(format!("expected one to four coordinates, found {}", point.len())),
         }
     }
 
-    fn print<const D: usize>(&self, sum: &Sum, point: [f64; D]) -> String {
+    fn print<const D: usize>(&self, field: &Field, point: [f64; D]) -> String {
         if self.gradient {
-            let (value, gradient) = sum.value_and_gradient(point);
+            let (value, gradient) = field.value_and_gradient(point);
             let numbers = std::iter::once(value).chain(gradient);
             numbers.map(shortest).collect::<Vec<_>>().join(" ")
         } else {
-            shortest(sum.value(point))
+            shortest(field.value(point))
         }
     }
 }
