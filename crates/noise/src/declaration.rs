@@ -49,7 +49,7 @@ pub(crate) const BASES: &[Declaration<Basis>] = &[
             statistics(-0.5, 0.5, 0.0, 0.037),
             statistics(-1.0, 1.0, 0.0, 0.0642),
             statistics(-1.04, 1.04, 0.0, 0.0732),
-            statistics(-1.5, 1.5, 0.0, 0.0854),
+            statistics(-1.6, 1.6, 0.0, 0.0854),
         ],
     },
     Declaration {
@@ -62,7 +62,7 @@ pub(crate) const BASES: &[Declaration<Basis>] = &[
             statistics(-0.5, 0.5, 0.0, 0.0203),
             statistics(-0.71, 0.71, 0.0, 0.03),
             statistics(-0.87, 0.87, 0.0, 0.0331),
-            statistics(-1.0, 1.0, 0.0, 0.0246),
+            statistics(-1.04, 1.04, 0.0, 0.0246),
         ],
     },
     Declaration {
@@ -144,7 +144,7 @@ pub(crate) const SUMS: &[Declaration<Combine>] = &[
             statistics(-0.969, 0.969, 0.0, 0.0495),
             statistics(-1.938, 1.938, 0.0, 0.0855),
             statistics(-2.015, 2.015, 0.0, 0.0975),
-            statistics(-2.906, 2.906, 0.0, 0.1137),
+            statistics(-3.1, 3.1, 0.0, 0.1137),
         ],
     },
     Declaration {
@@ -157,7 +157,7 @@ pub(crate) const SUMS: &[Declaration<Combine>] = &[
             statistics(0.0, 0.969, 0.273, 0.0243),
             statistics(0.0, 1.938, 0.398, 0.03),
             statistics(0.0, 2.015, 0.428, 0.0328),
-            statistics(0.0, 2.906, 0.459, 0.039),
+            statistics(0.0, 3.1, 0.459, 0.039),
         ],
     },
     Declaration {
@@ -167,7 +167,7 @@ pub(crate) const SUMS: &[Declaration<Combine>] = &[
         formula: "Σ gᵏ sₖ, with sₖ = wₖ (1 − |n(lᵏ p)|)², wₖ₊₁ = min(1, 2 sₖ)",
         source: "F. K. Musgrave in D. S. Ebert et al., “Texturing and Modeling: A Procedural Approach”",
         statistics: [
-            statistics(0.0, 1.938, 1.435, 0.0846),
+            statistics(0.25, 1.938, 1.435, 0.0846),
             statistics(0.0, 1.938, 1.207, 0.1057),
             statistics(0.0, 1.938, 1.153, 0.1145),
             statistics(0.0, 1.938, 1.096, 0.1336),
@@ -180,10 +180,10 @@ pub(crate) const SUMS: &[Declaration<Combine>] = &[
         formula: "Σ wₖ sₖ, with sₖ = gᵏ (n(lᵏ p) + 0.7), wₖ₊₁ = min(1, wₖ sₖ)",
         source: "F. K. Musgrave in D. S. Ebert et al., “Texturing and Modeling: A Procedural Approach”",
         statistics: [
-            statistics(-2.325, 2.325, 0.989, 0.0783),
+            statistics(0.2, 2.325, 0.989, 0.0783),
             statistics(-3.294, 3.294, 0.986, 0.1332),
             statistics(-3.371, 3.371, 0.984, 0.151),
-            statistics(-4.263, 4.263, 0.982, 0.1741),
+            statistics(-4.457, 4.457, 0.982, 0.1741),
         ],
     },
 ];

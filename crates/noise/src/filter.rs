@@ -1,9 +1,12 @@
-//! How a noise fades when it is averaged over a footprint: the band limit of the sums.
+//! How a noise looks when it is averaged over a footprint: the band limit of the sums.
 //!
-//! The best guess at the average of a noise n over a square or cube of side s, from its value at the centre, is
+//! A footprint is divided into three parts along each axis, and each part is judged by the noise at its centre. (Footprints
+//! of less than a quarter of a cell are judged as a whole; from an eighth on, the two ways blend.) The best guess at the average of a noise n over a square or cube of side s, from its value at the centre, is
 //! m + w(s) (n − m), with the mean m and w = cov(n, average) / var(n). Measured (800 footprints of 256 points each, for
 //! seven sides up to 2), w(s) is close to exp(−r s²); the rates r below fit it best. The mean of the absolute value is not zero,
 //! so that turbulence fades to grey and not to black.
+//!
+//! From footprints of eight cells on, the mean is all that is left.
 
 use crate::basis::Basis;
 use crate::math;
@@ -41,4 +44,38 @@ impl Fade {
         let lost = R::constant(1.0) - math::exp(footprint * footprint * R::constant(-self.rate));
         noise + lost * (R::constant(self.mean) - noise)
     }
+
+    /// [`Fade::apply`] for one of the parts of a footprint.
+    #[inline(always)]
+    pub fn apply_to_part<R: Real>(self, noise: R, footprint: R) -> R {
+        self.apply(noise, footprint * R::constant(1.0 / 3.0))
+    }
+
+    /// The noise over a footprint: from the whole, faded, and from the average of its parts.
+    #[inline(always)]
+    pub fn blend<R: Real>(self, whole: R, parts: R, footprint: R) -> R {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let share = footprint * R::constant(1.0 / NEAR) - one;
+        let share = R::select(share.less(zero), zero, R::select(one.less(share), one, share));
+        let blended = whole + share * (parts - whole);
+        let near = R::select(footprint.less(R::constant(NEAR)), whole, blended);
+        R::select(R::constant(FAR).less(footprint), R::constant(self.mean), near)
+    }
+}
+
+/// Up to here (in cells) a footprint is judged as a whole, from twice as much on by its parts.
+pub(crate) const NEAR: f64 = 0.125;
+
+/// Beyond, only the mean is left.
+pub(crate) const FAR: f64 = 8.0;
+
+/// How many parts a footprint has in `D` dimensions.
+pub(crate) const fn parts(dimensions: usize) -> usize {
+    3usize.pow(dimensions as u32)
+}
+
+/// The centre of a part along an axis, as a share of the footprint from its centre.
+#[inline(always)]
+pub(crate) fn part_centre(part: usize, axis: usize) -> f64 {
+    ((part / parts(axis) % 3) as f64 - 1.0) / 3.0
 }

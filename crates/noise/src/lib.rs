@@ -1,5 +1,22 @@
 //! Lattice noises and fractal sums: points in, numbers out, the same bits on every machine.
 //!
+//! The first picture, a grey map of clouds:
+//!
+//! ```
+//! use jaspe_noise::{Basis, Combine, Grid, Noise, Sum};
+//!
+//! let clouds = Sum::new(Noise::new(Basis::Improved, 0), Combine::Plain, 6);
+//! let grid = Grid { origin: [0.0; 2], step: [1.0 / 64.0; 2], count: [256; 2] };
+//! let mut values = vec![0.0; grid.len()];
+//! clouds.fill_grid(&grid, &mut values);
+//! let mut picture = b"P5 256 256 255\n".to_vec();
+//! picture.extend(values.iter().map(|value| (127.5 + 90.0 * value) as u8));
+//! // std::fs::write("clouds.pgm", picture)?;
+//! # assert_eq!(picture.len(), 15 + 256 * 256);
+//! ```
+//!
+//! Single points, gradients and slices of points:
+//!
 //! ```
 //! use jaspe_noise::{Basis, Combine, Noise, Sum};
 //!
@@ -20,23 +37,26 @@
 //!
 //! # The noises
 //!
-//! | [`Basis`] | what | range in 3-D | mean | mean of the absolute value |
+//! | [`Basis`] | what | range in 3-D | mean | variance |
 //! |---|---|---|---|---|
-//! | `Improved` | gradient noise of \[Perlin 2002\], exactly his listing | within [-1.04, 1.04] | 0 | 0.220 |
-//! | `Classic` | gradient noise of \[Perlin 1985\]: unit gradients, cubic curve | within [-0.87, 0.87] | 0 | 0.148 |
-//! | `Lattice` | random values of a table at the lattice points, cubic curve | [-1, 1] | 0 | 0.303 |
-//! | `Value` | random values of a hash at the lattice points, curve of degree five | [-1, 1] | 0 | 0.327 |
-//! | `Simplex` | gradient noise on tetrahedra | [-1, 1] | 0 | 0.315 |
-//! | `Cellular` | distances to feature points, \[Worley 1996\]: see [`Cellular`] | [0, 1.74] for F1 | 0.52 | 0.52 |
-//! | `White` | a random value per cell | [-1, 1] | 0 | 0.5 |
+//! | `Improved` | gradient noise of \[Perlin 2002\], exactly his listing | within [-1.04, 1.04] | 0 | 0.073 |
+//! | `Classic` | gradient noise of \[Perlin 1985\]: unit gradients, cubic curve | within [-0.87, 0.87] | 0 | 0.033 |
+//! | `Lattice` | random values of a table at the lattice points, cubic curve | [-1, 1] | 0 | 0.137 |
+//! | `Value` | random values of a hash at the lattice points, curve of degree five | [-1, 1] | 0 | 0.160 |
+//! | `Simplex` | gradient noise on tetrahedra | [-1, 1] | 0 | 0.154 |
+//! | `Cellular` | distances to feature points, \[Worley 1996\]: see [`Cellular`] | [0, 1.74] for F1 | 0.52 | 0.030 |
+//! | `White` | a random value per cell | [-1, 1] | 0 | 0.333 |
+//!
+//! Formulas, sources and statistics of all of them and of the sums: [`Basis::declaration`], [`Combine::declaration`].
 //!
 //! All have one to four dimensions (one and two are slices of three at zero; cellular noise has its feature points in the
 //! dimensions of the point), a seed (0 is the published table), and, but for simplex noise, any integer period along each axis:
-//! [`Noise::with_period`]. The first three and simplex noise repeat after 256 cells in any case.
+//! [`Noise::with_period`]. The first three repeat after 256 cells in any case.
 //!
 //! Sums add octaves plainly, by their absolute value, or as multifractals ([`Combine`]), with any lacunarity and gain; the
 //! last octave may fade in ([`Sum::with_octaves`]), and [`Sum::fill_filtered`] fades what a sample's footprint cannot resolve.
-//! [`Noise::fill_with_gradient`] and [`Sum::fill_with_gradient`] give exact gradients with the values.
+//! [`Noise::fill_with_gradient`] and [`Sum::fill_with_gradient`] give exact gradients with the values. [`Noise::fill_grid`] and
+//! [`Sum::fill_grid`] are made for uniform grids. A [`Warp`] displaces the points of one [`Field`] by another.
 //!
 //! # Promises
 //!
@@ -47,7 +67,8 @@
 //! * Improved noise equals Perlin's listing: exactly in double precision, to within 2e-6 in single precision.
 //! * No input panics. A coordinate that is infinite or NaN gives NaN. Far from the origin, where neighbouring numbers
 //!   are a whole unit apart, every point is a lattice point.
-//! * Nothing is allocated while evaluating.
+//! * Nothing is allocated while evaluating, but for the rows of a grid.
+//! * Filtered sums are within 0.02 (root mean square) of the average over the footprint: [`Sum::value_filtered`].
 //!
 //! # Sources
 //!

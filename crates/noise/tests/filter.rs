@@ -16,7 +16,7 @@ fn random_numbers() -> impl FnMut() -> f32 {
 
 /// The root mean square of the difference between the filtered sum and the average of 1024 samples over the footprint.
 fn difference(sum: &Sum, footprint: f32) -> f32 {
-    const FOOTPRINTS: usize = 300;
+    const FOOTPRINTS: usize = 200;
     const SAMPLES: usize = 1024;
     let mut random = random_numbers();
     let mut squares = 0.0;
@@ -34,12 +34,11 @@ fn difference(sum: &Sum, footprint: f32) -> f32 {
 
 #[test]
 fn filtered_sums_are_near_the_average_over_the_footprint() {
-    for (combine, bound) in [(Combine::Plain, 0.08), (Combine::Absolute, 0.06)] {
+    for combine in [Combine::Plain, Combine::Absolute] {
         let sum = Sum::new(Noise::new(Basis::Improved, 0), combine, 5);
-        for footprint in [0.03, 0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 8.0, 30.0] {
+        for footprint in [0.03, 0.1, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 30.0] {
             let found = difference(&sum, footprint);
-            let bound = if footprint >= 4.0 { 0.025 } else { bound };
-            assert!(found < bound, "{combine:?} at {footprint}: {found}");
+            assert!(found < 0.02, "{combine:?} at {footprint}: {found}");
         }
     }
 }
@@ -50,18 +49,18 @@ fn without_a_footprint_nothing_is_lost_and_with_a_large_one_the_mean_remains() {
     for &basis in Basis::ALL {
         for &combine in Combine::ALL {
             let sum = Sum::new(Noise::new(basis, 0), combine, 4);
-            let mut mean = 0.0;
-            let mut last = None;
-            for _ in 0..20_000 {
-                let point = [random() * 100.0, random() * 100.0, random() * 100.0];
-                let value = sum.value(point);
-                assert_eq!(sum.value_filtered(point, 0.0).to_bits(), value.to_bits());
-                mean += f64::from(value) / 20_000.0;
-                let even = sum.value_filtered(point, 1e4);
-                assert!((*last.get_or_insert(even) - even).abs() < 1e-6f32, "{basis:?} {combine:?}");
-            }
+            const COUNT: usize = 20_000;
+            let columns: [Vec<f32>; 3] = std::array::from_fn(|_| (0..COUNT).map(|_| random() * 100.0).collect());
+            let columns = columns.each_ref().map(Vec::as_slice);
+            let [mut values, mut sharp, mut even] = [(); 3].map(|()| vec![0.0; COUNT]);
+            sum.fill(columns, &mut values);
+            sum.fill_filtered(columns, &[0.0; COUNT], &mut sharp);
+            sum.fill_filtered(columns, &[1e4; COUNT], &mut even);
+            assert!((0..COUNT).all(|i| sharp[i].to_bits() == values[i].to_bits()), "{basis:?} {combine:?}");
+            assert!((0..COUNT).all(|i| (even[i] - even[0]).abs() < 1e-6), "{basis:?} {combine:?}");
+            let mean = values.iter().map(|&value| f64::from(value)).sum::<f64>() / COUNT as f64;
             if matches!(combine, Combine::Plain | Combine::Absolute) {
-                let even = f64::from(last.unwrap());
+                let even = f64::from(even[0]);
                 assert!((even - mean).abs() < 0.03, "{basis:?} {combine:?}: {even}, mean {mean}");
             }
         }
@@ -71,17 +70,19 @@ fn without_a_footprint_nothing_is_lost_and_with_a_large_one_the_mean_remains() {
 #[test]
 fn filtered_sums_have_the_same_bits_at_every_level() {
     let mut random = random_numbers();
-    let mut column = |scale: f32| -> Vec<f32> { (0..333).map(|_| random() * scale).collect() };
+    let mut column = |scale: f32| -> Vec<f32> { (0..99).map(|_| random() * scale).collect() };
     let (x, y, z, footprints) = (column(40.0), column(40.0), column(40.0), column(2.0));
     for &basis in Basis::ALL {
         for &combine in Combine::ALL {
             let sum = Sum::new(Noise::new(basis, 1), combine, 5);
+            let space: Vec<f32> = (0..99).map(|i| sum.value_filtered([x[i], y[i], z[i]], footprints[i])).collect();
+            let plane: Vec<f32> = (0..99).map(|i| sum.value_filtered([x[i], y[i]], footprints[i])).collect();
             for level in Level::ALL {
-                let mut values = vec![0.0; 333];
+                let mut values = vec![0.0; 99];
                 sum.fill_filtered_at(level, [&x, &y, &z], &footprints, &mut values);
-                assert!((0..333).all(|i| values[i] == sum.value_filtered([x[i], y[i], z[i]], footprints[i])));
+                assert_eq!(values, space, "{basis:?} {combine:?} at {level:?}");
                 sum.fill_filtered_at(level, [&x, &y], &footprints, &mut values);
-                assert!((0..333).all(|i| values[i] == sum.value_filtered([x[i], y[i]], footprints[i])));
+                assert_eq!(values, plane, "{basis:?} {combine:?} at {level:?}");
             }
         }
     }

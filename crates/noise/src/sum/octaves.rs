@@ -3,7 +3,7 @@
 
 use super::Sum;
 use super::combine::{Combine, Partial};
-use crate::filter::Fade;
+use crate::filter::{self, FAR, Fade, NEAR};
 use crate::noise::Octave;
 use crate::number::Dual;
 use crate::simd::{self, Level, Task};
@@ -64,10 +64,18 @@ impl Sum {
                 } else {
                     octave.fill(level, &scaled, noise, &mut []);
                 }
-                let footprints = footprints.map(|footprints| &footprints[at.clone()]);
-                let (combine, buffers) = (self.combine, &buffers);
+                let mut filtered = None;
+                if let Some(footprints) = footprints {
+                    let mut sides = [0.0; CHUNK];
+                    for (side, footprint) in sides.iter_mut().zip(&footprints[at.clone()]) {
+                        *side = footprint * frequency as f32;
+                    }
+                    let averages = self.average_parts::<D>(level, &octave, fade, &sides[..at.len()], &buffers.scaled);
+                    filtered = Some((sides, averages));
+                }
+                let (combine, buffers, filtered) = (self.combine, &buffers, filtered.as_ref());
                 let partials = &mut partials[..at.len()];
-                simd::run(level, Add::<D, G> { combine, frequency, amplitude, fade, footprints, buffers, partials });
+                simd::run(level, Add::<D, G> { combine, frequency, amplitude, fade, filtered, buffers, partials });
             }
             for (i, partial) in at.zip(&partials) {
                 values[i] = partial.sum.value;
@@ -75,6 +83,58 @@ impl Sum {
                     axis[i] = part;
                 }
             }
+        }
+    }
+}
+
+impl Sum {
+    /// The averages over footprints of these sides (in cells) around the points, from their parts; anything where all
+    /// footprints are so small or so large that they are judged without.
+    fn average_parts<const D: usize>(
+        &self,
+        level: Level,
+        octave: &Octave,
+        fade: Fade,
+        sides: &[f32],
+        points: &[[f32; CHUNK]; D],
+    ) -> [f32; CHUNK] {
+        let mut averages = [0.0; CHUNK];
+        let judged_without = |side: &f32| f64::from(*side) < NEAR || f64::from(*side) > FAR;
+        if sides.iter().all(judged_without) {
+            return averages;
+        }
+        let (mut moved, mut noise) = (*points, [0.0; CHUNK]);
+        let count = sides.len();
+        for part in 0..filter::parts(D) {
+            for (axis, (moved, points)) in moved.iter_mut().zip(points).enumerate() {
+                let centre = filter::part_centre(part, axis) as f32;
+                for ((moved, point), side) in moved.iter_mut().zip(points).zip(sides) {
+                    *moved = point + side * centre;
+                }
+            }
+            octave.fill(level, &moved.each_ref().map(|axis| &axis[..count]), &mut noise[..count], &mut []);
+            let (combine, noise, averages) = (self.combine, &noise[..count], &mut averages[..count]);
+            simd::run(level, AddPart { combine, fade, sides, noise, averages });
+        }
+        averages.map(|total| total * (1.0 / filter::parts(D) as f64) as f32)
+    }
+}
+
+/// Adds the parts of footprints.
+struct AddPart<'a> {
+    combine: Combine,
+    fade: Fade,
+    sides: &'a [f32],
+    noise: &'a [f32],
+    averages: &'a mut [f32],
+}
+
+impl Task for AddPart<'_> {
+    #[inline(always)]
+    fn run(self) {
+        for ((average, &noise), &side) in self.averages.iter_mut().zip(self.noise).zip(self.sides) {
+            let noise = self.combine.fold::<f32, 0, false>(Dual { value: noise, gradient: [] });
+            *average += self.fade.apply_to_part(noise.value, side);
         }
     }
 }
@@ -92,7 +152,8 @@ struct Add<'a, const D: usize, const G: bool> {
     frequency: f64,
     amplitude: f64,
     fade: Fade,
-    footprints: Option<&'a [f32]>,
+    /// The sides of the footprints in cells, and the averages of their parts.
+    filtered: Option<&'a ([f32; CHUNK], [f32; CHUNK])>,
     buffers: &'a Buffers<D>,
     partials: &'a mut [Partial<f32, D>],
 }
@@ -106,8 +167,9 @@ impl<const D: usize, const G: bool> Task for Add<'_, D, G> {
                 noise.gradient[axis] = self.buffers.slopes[axis][i];
             }
             let mut noise = self.combine.fold::<f32, D, G>(noise);
-            if let Some(footprints) = self.footprints {
-                noise.value = self.fade.apply(noise.value, footprints[i] * self.frequency as f32);
+            if let Some((sides, averages)) = self.filtered {
+                let whole = self.fade.apply(noise.value, sides[i]);
+                noise.value = self.fade.blend(whole, averages[i], sides[i]);
             }
             partial.add::<G>(self.combine, self.frequency, self.amplitude, noise);
         }
