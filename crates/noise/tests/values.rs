@@ -114,6 +114,58 @@ fn improved_noise_equals_an_independent_listing() {
     assert_eq!(seen, [true; 16]);
 }
 
+/// Improved noise of four dimensions as Perlin's `ImprovedNoise4D` tells it, apart from the crate's code.
+fn listing_of_four(table: &[u8], point: [f64; 4], seen: &mut [bool; 32]) -> f64 {
+    let cell = point.map(|coordinate| coordinate.floor());
+    let mut dots = [0.0; 16];
+    for (i, dot) in dots.iter_mut().enumerate() {
+        let corner: [i64; 4] = std::array::from_fn(|axis| cell[axis] as i64 + (i >> axis & 1) as i64);
+        let hash = corner.iter().fold(0, |hash, c| usize::from(table[hash + c.rem_euclid(256) as usize])) % 32;
+        seen[hash] = true;
+        let [x, y, z, w] = std::array::from_fn(|axis| point[axis] - corner[axis] as f64);
+        let [a, b, c] = [[y, z, w], [w, x, y], [z, w, x], [y, z, w]][hash / 8];
+        let signed = |bit: usize, part: f64| if hash & bit == 0 { -part } else { part };
+        *dot = signed(4, a) + signed(2, b) + signed(1, c);
+    }
+    for axis in 0..4 {
+        let t = point[axis] - cell[axis];
+        let weight = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+        for i in 0..8 >> axis {
+            dots[i] = dots[2 * i] + weight * (dots[2 * i + 1] - dots[2 * i]);
+        }
+    }
+    dots[0]
+}
+
+#[test]
+fn improved_noise_of_four_dimensions_equals_an_independent_listing() {
+    let (listing, noise) = (Listing::new(), Noise::new(Basis::Improved, 0));
+    let (mut random, mut seen) = (random_numbers(), [false; 32]);
+    for i in 0..5_000 {
+        let scale = [4.0, 300.0, 1e5, 1e9][i % 4];
+        let point: [f64; 4] = std::array::from_fn(|_| random() * scale);
+        assert_eq!(noise.value(point), listing_of_four(&listing.table, point, &mut seen), "at {point:?}");
+    }
+    assert_eq!(seen, [true; 32]);
+}
+
+#[test]
+fn periods_repeat_to_the_bit_in_one_and_four_dimensions() {
+    let mut random = random_numbers();
+    for basis in Basis::ALL.iter().copied().filter(|&basis| basis != Basis::Simplex) {
+        for period in [1u32, 2, 5, 300] {
+            let line = Noise::new(basis, 0).with_period([period]).unwrap();
+            let four = Noise::new(basis, 0).with_period([period; 4]).unwrap();
+            for _ in 0..100 {
+                let point: [f32; 4] = std::array::from_fn(|_| (random() * 1000.0).floor() as f32 / 64.0);
+                let moved = point.map(|coordinate| coordinate + period as f32);
+                assert_eq!(line.value([point[0]]).to_bits(), line.value([moved[0]]).to_bits(), "{basis:?} {period}");
+                assert_eq!(four.value(point).to_bits(), four.value(moved).to_bits(), "{basis:?} {period}");
+            }
+        }
+    }
+}
+
 #[test]
 fn gradient_noises_vanish_at_lattice_points() {
     for basis in [Basis::Improved, Basis::Classic] {
@@ -174,6 +226,46 @@ fn gradients_equal_central_differences() {
                     assert!((difference - gradient[axis]).abs() < 1e-6 + bend, "{basis:?} {combine:?} {point:?}");
                 }
             }
+        }
+    }
+}
+
+/// Gradients of a noise in D dimensions against central differences.
+fn check_gradients<const D: usize>(sum: &Sum) {
+    let mut random = random_numbers();
+    let (step, mut compared) = (1e-5, 0);
+    for _ in 0..300 {
+        let point: [f64; D] = std::array::from_fn(|_| random() * 20.0);
+        let (value, gradient) = sum.value_and_gradient(point);
+        for axis in 0..D {
+            let moved = |by: f64| {
+                let mut moved = point;
+                moved[axis] += by;
+                sum.value(moved)
+            };
+            let difference = |step: f64| (moved(step) - moved(-step)) / (2.0 * step);
+            // Beside a crease or a step the difference says nothing: there it depends on its width.
+            let (wide, narrow) = (difference(2.0 * step), difference(step));
+            if (wide - narrow).abs() < 1e-7 * (1.0 + narrow.abs()) {
+                compared += 1;
+                let error = (narrow - gradient[axis]).abs();
+                assert!(error < 1e-6 * (1.0 + narrow.abs()), "{sum:?} in {D} at {point:?}: {narrow}, {gradient:?}");
+            }
+        }
+        assert_eq!(value, sum.value(point));
+    }
+    assert!(compared > 200 * D, "{sum:?} in {D}: {compared}");
+}
+
+#[test]
+fn gradients_equal_central_differences_in_every_number_of_dimensions() {
+    for &basis in Basis::ALL {
+        for &combine in Combine::ALL {
+            let sum = Sum::new(Noise::new(basis, 6), combine, 2);
+            check_gradients::<1>(&sum);
+            check_gradients::<2>(&sum);
+            check_gradients::<3>(&sum);
+            check_gradients::<4>(&sum);
         }
     }
 }
