@@ -40,10 +40,10 @@ impl Julia {
     /// An estimate of the distance from a point to the set; negative well inside.
     fn distance(&self, point: DVec3) -> f64 {
         let mut z = DVec4::new(point.x, point.y, point.z, 0.0);
-        // |z′| alone matters, and |2 z z′| is 2 |z| |z′|.
-        let (mut size2, mut growth) = (z.length_squared(), 1.0);
+        // |z′| alone matters, |2 z z′| is 2 |z| |z′|, and squares need no roots on the way.
+        let (mut size2, mut growth2) = (z.length_squared(), 1.0);
         for _ in 0..self.iterations {
-            growth *= 2.0 * size2.sqrt();
+            growth2 *= 4.0 * size2;
             z = self.square(z);
             size2 = z.length_squared();
             if size2 > ESCAPE2 {
@@ -51,7 +51,7 @@ impl Julia {
             }
         }
         // ½ |z| ln |z| / |z′|, with ln |z| from its square.
-        if size2 > 0.0 { 0.25 * size2.sqrt() * ln(size2) / growth } else { -1.0 }
+        if size2 > 0.0 { 0.25 * (size2 / growth2).sqrt() * ln(size2) } else { -1.0 }
     }
 
     /// The gradient of |z| after all iterations, as far as these stay within what numbers can hold.
