@@ -95,7 +95,7 @@ fn atan_unit(t: f64) -> f64 {
 }
 
 /// Arccosine, 0 to π, of a number from -1 to 1; error below 5e-7 ([Abramowitz, Stegun 1964] 4.4.46).
-#[inline]
+#[inline(always)]
 pub(crate) fn acos(x: f32) -> f32 {
     let a = x.abs();
     let terms = [

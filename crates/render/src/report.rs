@@ -7,7 +7,7 @@ mod shade;
 use glam::{Vec2, Vec3};
 use jaspe_texture::Space;
 
-use crate::geometry::{Geometry, Hit, Hits, Id, PlaneShape, Ray, Rays, Shape};
+use crate::geometry::{Geometry, Hit, Hits, Id, PlaneShape, Ray, Rays, Shape, simd};
 use crate::material::Albedo;
 use crate::math;
 use crate::wave::{Batch, Path, Queues, Rules};
@@ -98,10 +98,16 @@ impl Rules for Report {
     }
 }
 
+/// Texture coordinates of a sphere: `x` of the unit normal, and the height over the radius.
+#[inline(always)]
+fn sphere_uv(x: f32, height: f32) -> Vec2 {
+    Vec2::new((x + 1.0) / 4.0, math::acos(height.clamp(-1.0, 1.0)) / std::f32::consts::PI)
+}
+
 impl Report {
     /// Colours of a batch, one per member.
     fn albedos(&self, batch: &Batch<'_>, room: &mut Room) {
-        let Room { position, outward, texture_points, colors, .. } = room;
+        let Room { position, outward, heights, round, texture_points, colors, .. } = room;
         let uv = |i: usize| self.uv(batch.geometry, &batch.hit(i), position.get(i));
         let count = batch.members.len();
         colors.resize(count, [0.0; 3]);
@@ -115,7 +121,11 @@ impl Report {
                 Space::Local => procedural.evaluate(outward, colors),
                 Space::Uv => {
                     texture_points.resize(count);
-                    (0..count).for_each(|i| texture_points.set(i, uv(i).extend(0.0)));
+                    if *round {
+                        simd::run(shade::SphereUvs { outward, heights, uvs: texture_points });
+                    } else {
+                        (0..count).for_each(|i| texture_points.set(i, uv(i).extend(0.0)));
+                    }
                     procedural.evaluate(texture_points, colors);
                 }
             },
@@ -136,8 +146,7 @@ impl Report {
         match geometry.objects[hit.id.object as usize].shape {
             Shape::Sphere { center, radius } => {
                 let n = (p - center).normalize_or(Vec3::Z);
-                let height = ((p.y - center.y) / radius).clamp(-1.0, 1.0);
-                Vec2::new((n.x + 1.0) / 4.0, math::acos(height) / std::f32::consts::PI)
+                sphere_uv(n.x, (p.y - center.y) / radius)
             }
             Shape::Plane(index) => {
                 let offset = p - geometry.planes[index as usize].point;

@@ -18,6 +18,10 @@ pub(crate) struct Room {
     pub normal: Rows,
     /// From the reference point of the texture, of unit length: see [`Report::reference`].
     pub outward: Rows,
+    /// Of points of spheres over their centres, over their radii.
+    pub heights: Vec<f32>,
+    /// Whether all are points of spheres.
+    pub round: bool,
     pub texture_points: Rows,
     pub colors: Vec<[f32; 3]>,
     ids: Ids,
@@ -48,6 +52,8 @@ impl Room {
         self.normal.resize(count);
         self.outward.resize(count);
         self.ids.resize(count);
+        self.heights.resize(count, 0.0);
+        let heights = &mut self.heights[..count];
         let (mut position, mut outward) = (self.position.slices_mut(count), self.outward.slices_mut(count));
         let (objects, indices) = (&mut self.ids.object[..count], &mut self.ids.index[..count]);
         let mut round = true;
@@ -58,7 +64,10 @@ impl Room {
             let id = batch.hits.id.get(member);
             (objects[i], indices[i]) = (id.object, id.index);
             let center = match batch.geometry.objects[id.object as usize].shape {
-                Shape::Sphere { center, .. } => center,
+                Shape::Sphere { center, radius } => {
+                    heights[i] = (p.y - center.y) / radius;
+                    center
+                }
                 _ => {
                     round = false;
                     report.reference(batch.geometry, &batch.hits.get(member))
@@ -67,6 +76,7 @@ impl Room {
             put(&mut outward, i, p - center);
         }
         simd::run(Normalize { rows: &mut self.outward });
+        self.round = round;
         if round {
             self.normal.clone_from(&self.outward);
             return;
@@ -86,6 +96,28 @@ impl Room {
 #[inline(always)]
 fn put(rows: &mut [&mut [f32]; 3], i: usize, p: Vec3) {
     (rows[0][i], rows[1][i], rows[2][i]) = (p.x, p.y, p.z);
+}
+
+/// Texture coordinates of points of spheres.
+pub(super) struct SphereUvs<'a> {
+    pub outward: &'a Rows,
+    pub heights: &'a [f32],
+    pub uvs: &'a mut Rows,
+}
+
+impl simd::Kernel for SphereUvs<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let count = self.heights.len();
+        let [x, ..] = self.outward.slices(count);
+        let [u, v, _] = self.uvs.slices_mut(count);
+        for i in 0..count {
+            let uv = super::sphere_uv(x[i], self.heights[i]);
+            (u[i], v[i]) = (uv.x, uv.y);
+        }
+    }
 }
 
 /// Makes vectors unit vectors; those without a length become zero.

@@ -63,8 +63,8 @@ pub(crate) fn send(rules: &Sunflow, world: &World, keep: Keep, first: u32, count
     chunks.concat()
 }
 
-/// Gives all that is kept of one photon the power that it had in the end. Sunflow: a photon's power is one object, which
-/// every bounce changes (R17).
+/// Gives all that is kept of one photon the power that it had in the end, whether it went on from there or not. Sunflow: a
+/// photon's power is one object, which every bounce changes (R17).
 fn share_last(kept: &mut [Photon], first: u32) {
     let mut last = vec![Vec3::ZERO; CHUNK as usize];
     kept.iter().for_each(|photon| last[(photon.number - first) as usize] = photon.power);
@@ -153,6 +153,9 @@ impl<'a> Sender<'a> {
         match response {
             Response::Matte(coat) => {
                 if let Some(tint) = chosen(point.color) {
+                    if let Some(photon) = kept.last_mut().filter(|_| self.keep == Keep::All) {
+                        photon.power *= tint;
+                    }
                     if self.keep == Keep::All && depth.diffuse < limits.max_diffuse {
                         let turn = (choice / below).clamp(0.0, 1.0);
                         let direction = math::cosine_hemisphere(point.surface.normal, [turn, other]);
