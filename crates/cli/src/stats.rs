@@ -49,6 +49,8 @@ pub struct Rays {
     pub reflection: u64,
     /// Refracted.
     pub refraction: u64,
+    /// From matte surfaces, for light from others.
+    pub gather: u64,
 }
 
 impl From<&Stats> for Rays {
@@ -58,6 +60,7 @@ impl From<&Stats> for Rays {
             shadow: stats.shadow_rays,
             reflection: stats.reflection_rays,
             refraction: stats.refraction_rays,
+            gather: stats.gather_rays,
         }
     }
 }

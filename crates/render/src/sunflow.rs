@@ -19,12 +19,13 @@ use crate::environment::Environment;
 use crate::geometry::{Geometry, Hits, Ray, Rays, Rows, Scratch, Surface};
 use crate::light::Light;
 use crate::material::{Albedo, Coat, Gloss, Response};
-use crate::options::Look;
+use crate::options::{Look, Observer};
 use crate::wave::{Batch, Path, Queues, RayKind, Rules, World};
 use caustics::{CausticMap, Nearest};
 use coat::Bsdf;
 use direct::{Lit, Shadows};
 pub(crate) use indirect::Indirect;
+use photons::Senders;
 use point::{Point, Points};
 use virtual_lights::VirtualLights;
 
@@ -55,6 +56,9 @@ pub(crate) enum Caustics {
     Map(Arc<CausticMap>),
 }
 
+/// Rays of a wave, about, where every sample sends many.
+const RAYS: usize = 32_768;
+
 /// One thread's room for the hits of a batch.
 #[derive(Default)]
 pub(crate) struct Room {
@@ -73,6 +77,11 @@ impl Rules for Sunflow {
     type Node = Vec3;
     type Room = Room;
     const T_MIN: f32 = 0.0;
+
+    fn wave(&self) -> usize {
+        let fan = if let Indirect::Paths { samples } = self.indirect { samples } else { 1 };
+        (RAYS / fan.max(1) as usize).clamp(16, 1024)
+    }
 
     fn shade(&self, batch: &Batch<'_>, room: &mut Room, queues: &mut Queues<Vec3>) {
         room.prepare(batch);
@@ -284,15 +293,15 @@ impl Sunflow {
         }
     }
 
-    /// Sends the photons that the scene asks for, and keeps what comes of them.
-    pub fn prepare(&self, world: &World) -> Sunflow {
+    /// Sends the photons that the scene asks for, and keeps what comes of them; in vain where the observer has enough.
+    pub fn prepare(&self, world: &World, observer: &dyn Observer) -> Sunflow {
         let mut ready = self.clone();
         if let Some(Caustics::Wanted { emit, gather, radius }) = self.caustics {
-            ready.caustics =
-                CausticMap::send(self, world, emit, gather, radius).map(|map| Caustics::Map(Arc::new(map)));
+            ready.caustics = CausticMap::send(&Senders { rules: self, world, observer }, emit, gather, radius)
+                .map(|map| Caustics::Map(Arc::new(map)));
         }
         if let Indirect::Instant { samples, sets, bias } = self.indirect {
-            let lights = VirtualLights::send(self, world, samples, sets, bias);
+            let lights = VirtualLights::send(&Senders { rules: self, world, observer }, samples, sets, bias);
             ready.indirect = Indirect::VirtualLights(Arc::new(lights));
         }
         ready

@@ -18,8 +18,6 @@ use crate::wave::{Results, Rules, Samples, Seen, Shots, Workspace};
 
 /// Pixels along the edge of a tile.
 const TILE: u32 = 32;
-/// Camera samples per wave: enough to fill texture batches, few enough for the cache.
-const WAVE: usize = 1024;
 
 /// Sums over the samples of one pixel.
 #[derive(Debug, Clone, Copy, Default)]
@@ -172,7 +170,7 @@ pub(crate) fn render(
 ) -> Result<(Film, Stats), Cancelled> {
     match &scene.meaning {
         Meaning::Sunflow { rules, .. } => in_pool(options, || {
-            let rules = rules.prepare(&scene.world);
+            let rules = rules.prepare(&scene.world, observer);
             Job::new(scene, &rules, options, observer).passes()
         }),
         Meaning::Report { rules, .. } => in_pool(options, || Job::new(scene, rules, options, observer).passes()),
@@ -310,8 +308,9 @@ impl<'a, R: Rules> Job<'a, R> {
             }
         }
         // As many pixels as fill a wave, or as many samples of one.
-        let each = ((pass.end - pass.first) as usize).clamp(1, WAVE);
-        for slots in active.chunks(WAVE / each) {
+        let wave = self.rules.wave();
+        let each = ((pass.end - pass.first) as usize).clamp(1, wave);
+        for slots in active.chunks(wave / each) {
             room.pixels.clear();
             room.pixels.extend(slots.iter().map(|&slot| tile.position(slot)));
             for first in (pass.first..pass.end).step_by(each) {

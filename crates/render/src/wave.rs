@@ -219,6 +219,11 @@ pub(crate) trait Rules: Sync {
     /// The smallest distance of a hit.
     const T_MIN: f32;
 
+    /// How many camera samples go together: enough to fill texture batches, few enough that their rays fit the caches.
+    fn wave(&self) -> usize {
+        1024
+    }
+
     /// Shades a batch: adds light to nodes, queues secondary rays.
     fn shade(&self, batch: &Batch<'_>, room: &mut Self::Room, queues: &mut Queues<Self::Node>);
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use jaspe_render::{CompileOptions, Look, RenderOptions, compile, render};
-use jaspe_scene::{Dialect, DiskLoader, parse};
+use jaspe_scene::{Dialect, DiskLoader, MemoryLoader, parse};
 
 /// Compiles and renders a few pixels in both dialects; returns how often there was a picture.
 fn try_everything(path: &Path, text: &str) -> usize {
@@ -173,6 +173,35 @@ fn broken_real_scenes_never_panic() {
                 }
             }
             try_everything(path, &mutant.join(" "));
+        }
+    }
+}
+
+#[test]
+fn absurd_numbers_of_samples_and_photons_are_bounded() {
+    let most = 4_000_000_000u32;
+    let scene = |rest: &str| {
+        format!(
+            "image {{ resolution 2 2 aa 0 0 }} trace-depths {{ diff 1 refl 1 refr 1 }}
+             camera {{ type pinhole eye 0 0 5 target 0 0 0 up 0 1 0 fov 40 aspect 1 }}
+             object {{ shader s type sphere c 0 0 0 r 2 }} {rest}"
+        )
+    };
+    let matte = "shader { name s type diffuse diff 0.5 0.5 0.5 }";
+    let lamp = "light { type point color 1 1 1 power 100 p 0 0 9 }";
+    for rest in [
+        format!("{matte} light {{ type spherical color 1 1 1 radiance 10 center 3 0 3 radius 1 samples {most} }}"),
+        format!("{matte} {lamp} gi {{ type path samples {most} }}"),
+        format!("{matte} {lamp} gi {{ type ambocc bright 1 1 1 dark 0 0 0 samples {most} maxdist 3 }}"),
+        format!("shader {{ name s type amb-occ bright 1 1 1 dark 0 0 0 samples {most} dist 1 }}"),
+        format!("{lamp} shader {{ name s type phong diff 1 1 1 spec 1 1 1 20 samples {most} }}"),
+        format!("{matte} {lamp} gi {{ type igi samples 9 sets {most} b 0.1 bias-samples 0 }}"),
+    ] {
+        let text = scene(&rest);
+        let loader = MemoryLoader::default();
+        let (scene, _) = parse(Path::new("absurd.sc"), text.as_bytes(), &loader);
+        if let Some(scene) = compile(&scene, &loader, &CompileOptions::default()).scene {
+            render(&scene, &RenderOptions::default(), &()).expect("not cancelled");
         }
     }
 }

@@ -22,8 +22,10 @@ const MEANS: [Means; 10] = [
     ("bunny_ibl", [160, 120], [0.6676, 0.6283, 0.7276]),
 ];
 
-/// Means of the nine ninths of the picture, row by row from the top.
-const BLOCKS: [(&str, [u32; 2], [[f32; 3]; 9]); 3] = [
+/// A scene, its size, and the mean colours of the ninths of its picture, row by row from the top.
+type Ninths = (&'static str, [u32; 2], [[f32; 3]; 9]);
+
+const BLOCKS: [Ninths; 3] = [
     (
         "bump_demo",
         [200, 112],

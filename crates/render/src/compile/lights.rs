@@ -6,6 +6,7 @@ use glam::{DMat4, DVec3, Vec3};
 use jaspe_scene::description::{CornellBox, Ground, LightKind};
 use jaspe_scene::{Diagnostics, Dialect, Scene};
 
+use super::bounded;
 use super::materials::{Materials, Pictures, working};
 use crate::environment::{self, Environment};
 use crate::geometry::{MeshShape, Placement, Plan};
@@ -84,7 +85,7 @@ impl Lit {
             }
             LightKind::Spherical { color, radiance, center, radius, samples } => {
                 let (center, radiance) = (Vec3::from_array(*center), linear(color) * *radiance);
-                let samples = (*samples).max(LEAST_SAMPLES);
+                let samples = bounded(*samples).max(LEAST_SAMPLES);
                 self.lights.push(Light::Ball(Ball { center, radius: *radius, radiance, samples }));
                 self.shapes.push((Seen::Ball { center, radius: *radius }, vec![materials.add(shining(radiance))]));
             }
@@ -97,7 +98,7 @@ impl Lit {
                 };
                 let corners = (0..mesh.triangles.len()).map(|i| mesh.triangle_points(i));
                 let triangles = Shining::all(corners, radiance).into();
-                self.lights.push(Light::Triangles { triangles, samples: (*samples).max(LEAST_SAMPLES) });
+                self.lights.push(Light::Triangles { triangles, samples: bounded(*samples).max(LEAST_SAMPLES) });
                 self.shapes.push((Seen::Triangles(mesh), vec![materials.add(shining(radiance))]));
             }
             LightKind::SunSky { up, east, sundir, turbidity, samples, ground } => {
@@ -125,7 +126,7 @@ impl Lit {
 
     fn surround(&mut self, environment: Environment, samples: [u32; 2], lock: bool) {
         let environment = Arc::new(environment);
-        let [samples, low_samples] = samples.map(|samples| samples.max(LEAST_SAMPLES));
+        let [samples, low_samples] = samples.map(|samples| bounded(samples).max(LEAST_SAMPLES));
         let light = if lock {
             Light::beams(&environment, [samples, low_samples], self.lights.len() as u64)
         } else {
@@ -140,7 +141,7 @@ impl Lit {
         let [a, b] = room.corners.map(Vec3::from_array);
         let (min, max) = (a.min(b), a.max(b));
         let radiance = working(&room.emit, Dialect::Sunflow);
-        let light = Ceiling { room: [min, max], radiance, samples: room.samples.max(LEAST_SAMPLES) };
+        let light = Ceiling { room: [min, max], radiance, samples: bounded(room.samples).max(LEAST_SAMPLES) };
         let mut mesh = MeshShape::default();
         let mut rectangle = |corners: [Vec3; 4], slot: u32| {
             let first = mesh.points.len() as u32;

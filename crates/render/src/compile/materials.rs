@@ -12,6 +12,7 @@ use jaspe_scene::{Diagnostic, Diagnostics, Dialect, Loader, Scene, Span};
 use jaspe_texture::Texture;
 use jaspe_texture::declare::{Declaration, Value};
 
+use super::bounded;
 use crate::material::{Albedo, Coat, Gloss, Material, PictureMap, Procedural, Response};
 use crate::modifier::Modifier;
 use crate::options::Look;
@@ -113,11 +114,11 @@ fn material(shader: &Shader, pictures: &mut Pictures<'_>, diagnostics: &mut Diag
         ShaderKind::Constant { color } => (plain(color), Response::Constant),
         ShaderKind::Diffuse { diffuse } => (pictures.albedo(diffuse, diagnostics), Response::Matte(Coat::None)),
         ShaderKind::Phong { diffuse, specular, power, samples } => {
-            let coat = Coat::Phong { specular: gloss(specular), power: *power, samples: *samples };
+            let coat = Coat::Phong { specular: gloss(specular), power: *power, samples: bounded(*samples) };
             (pictures.albedo(diffuse, diagnostics), Response::Matte(coat))
         }
         ShaderKind::Ward { diffuse, specular, roughness, samples } => {
-            let coat = Coat::Ward { specular: gloss(specular), roughness: *roughness, samples: *samples };
+            let coat = Coat::Ward { specular: gloss(specular), roughness: *roughness, samples: bounded(*samples) };
             (pictures.albedo(diffuse, diagnostics), Response::Matte(coat))
         }
         ShaderKind::Shiny { diffuse, reflection } => {
@@ -132,7 +133,7 @@ fn material(shader: &Shader, pictures: &mut Pictures<'_>, diagnostics: &mut Diag
             let coat = if *glossy == 0.0 {
                 Coat::Mirror { specular }
             } else {
-                Coat::Phong { specular, power: 2.0 / glossy, samples: *samples }
+                Coat::Phong { specular, power: 2.0 / glossy, samples: bounded(*samples) }
             };
             (pictures.blend(diffuse, diagnostics), Response::Matte(coat))
         }
@@ -146,8 +147,11 @@ fn material(shader: &Shader, pictures: &mut Pictures<'_>, diagnostics: &mut Diag
             (plain(color), Response::Glass { eta: *eta, absorption })
         }
         ShaderKind::AmbientOcclusion { bright, dark, samples, distance } => {
-            let response =
-                Response::AmbientOcclusion { dark: working(dark, dialect), samples: *samples, distance: *distance };
+            let response = Response::AmbientOcclusion {
+                dark: working(dark, dialect),
+                samples: bounded(*samples),
+                distance: *distance,
+            };
             (pictures.albedo(bright, diagnostics), response)
         }
         ShaderKind::Wireframe { line, fill, width } => {

@@ -197,7 +197,11 @@ fn sunflow(
         surroundings,
         background: scene.background.as_ref().map(|background| Vec3::from_array(background.color.linear())),
         indirect,
-        caustics: scene.caustics.map(|c| Caustics::Wanted { emit: c.emit, gather: c.gather, radius: c.radius }),
+        caustics: scene.caustics.map(|c| Caustics::Wanted {
+            emit: c.emit.min(MOST_PHOTONS),
+            gather: c.gather,
+            radius: c.radius,
+        }),
         max_reflection: depth(depths.reflection, 4),
         max_refraction: depth(depths.refraction, 4),
         max_diffuse,
@@ -207,20 +211,34 @@ fn sunflow(
     Meaning::Sunflow { rules, camera: Camera::new(camera, size), filter, jitter }
 }
 
+/// Most samples that one point takes of anything: whatever a scene asks for, memory is bounded.
+const MOST_SAMPLES: u32 = 1 << 16;
+/// Most sets of virtual lights.
+const MOST_SETS: u32 = 256;
+/// Most photons that are sent for caustics.
+const MOST_PHOTONS: u32 = 1 << 24;
+
+/// A number of samples within bounds.
+fn bounded(samples: u32) -> u32 {
+    samples.min(MOST_SAMPLES)
+}
+
 /// How indirect light is found, and how often paths bounce for it.
 fn indirect(scene: &Scene, depth: u8) -> (Indirect, u8) {
     let Some(gi) = &scene.gi else { return (Indirect::None, depth) };
     let linear = |color: &Color| Vec3::from_array(color.linear());
     match &gi.kind {
-        GiKind::Path { samples } => (Indirect::Paths { samples: *samples }, depth),
+        GiKind::Path { samples } => (Indirect::Paths { samples: bounded(*samples) }, depth),
         // Sunflow: without a map there is one bounce (R6), with it there are as many as photons make.
         GiKind::IrradianceCache { samples, global, .. } => {
-            (Indirect::Paths { samples: *samples }, if global.is_some() { depth } else { depth.min(1) })
+            (Indirect::Paths { samples: bounded(*samples) }, if global.is_some() { depth } else { depth.min(1) })
         }
-        &GiKind::Instant { samples, sets, bias, .. } => (Indirect::Instant { samples, sets, bias }, depth),
+        &GiKind::Instant { samples, sets, bias, .. } => {
+            (Indirect::Instant { samples: bounded(samples), sets: sets.min(MOST_SETS), bias }, depth)
+        }
         GiKind::AmbientOcclusion { bright, dark, samples, max_distance } => {
             let (dark, bright) = (linear(dark), linear(bright));
-            (Indirect::Occlusion { dark, bright, samples: *samples, distance: *max_distance }, depth)
+            (Indirect::Occlusion { dark, bright, samples: bounded(*samples), distance: *max_distance }, depth)
         }
         GiKind::Fake { up, sky, ground } => {
             let up = Vec3::from_array(*up).normalize_or(Vec3::Y);

@@ -3,9 +3,7 @@
 
 use glam::Vec3;
 
-use super::Sunflow;
-use super::photons::{self, Keep, Photon};
-use crate::wave::World;
+use super::photons::{self, Keep, Photon, Senders};
 
 /// The photons as an implicit balanced tree: the middle of a range splits it, the halves on its sides are its children.
 #[derive(Debug, Clone)]
@@ -28,8 +26,8 @@ const MOST: usize = 4096;
 
 impl CausticMap {
     /// Sends photons, and keeps what comes by way of mirrors and glass; `None` if nothing does.
-    pub fn send(rules: &Sunflow, world: &World, emit: u32, gather: u32, radius: f32) -> Option<Self> {
-        let mut photons = photons::send(rules, world, Keep::Caustics, 0, emit);
+    pub fn send(senders: &Senders<'_>, emit: u32, gather: u32, radius: f32) -> Option<Self> {
+        let mut photons = photons::send(senders, Keep::Caustics, 0, emit);
         let brightest = photons.iter().map(|photon| photon.power.max_element()).fold(0.0, f32::max);
         let gather = (gather as usize).clamp(1, MOST);
         let radius = radius.min(1.4 * (brightest * gather as f32).sqrt());

@@ -12,6 +12,7 @@ use crate::geometry::{Geometry, Hits, Rays};
 use crate::light::Light;
 use crate::material::luminance;
 use crate::math;
+use crate::options::Observer;
 use crate::sampler::SampleKey;
 use crate::wave::{RayKind, Samples, Workspace, World};
 
@@ -40,9 +41,17 @@ pub(crate) enum Keep {
 /// Photons sent at a time.
 const CHUNK: u32 = 1024;
 
+/// Who sends photons, and where.
+pub(crate) struct Senders<'a> {
+    pub rules: &'a Sunflow,
+    pub world: &'a World,
+    pub observer: &'a dyn Observer,
+}
+
 /// Sends `count` photons of the lights, numbered from `first` on, and returns those that are kept. The same photons for
-/// any number of threads.
-pub(crate) fn send(rules: &Sunflow, world: &World, keep: Keep, first: u32, count: u32) -> Vec<Photon> {
+/// any number of threads; fewer if the observer cancels.
+pub(crate) fn send(senders: &Senders<'_>, keep: Keep, first: u32, count: u32) -> Vec<Photon> {
+    let Senders { rules, world, observer } = *senders;
     let sender = Sender::new(rules, keep, count);
     if sender.total <= 0.0 {
         return Vec::new();
@@ -51,6 +60,9 @@ pub(crate) fn send(rules: &Sunflow, world: &World, keep: Keep, first: u32, count
     let chunks: Vec<Vec<Photon>> = starts
         .into_par_iter()
         .map_init(Box::<Workspace<Sender<'_>>>::default, |workspace, start| {
+            if observer.cancelled() {
+                return Vec::new();
+            }
             let mut samples = sender.emit(first + start..first + count.min(start + CHUNK));
             workspace.trace(world, &sender, &mut samples, false);
             let mut kept = std::mem::take(&mut workspace.room.kept);

@@ -3,11 +3,10 @@
 use glam::Vec3;
 
 use super::direct::Lit;
-use super::photons::{self, Keep, Photon};
+use super::photons::{self, Keep, Photon, Senders};
 use super::point::{Point, Which};
-use super::{Queues, Room, Shadows, Sunflow};
+use super::{Queues, Room, Shadows};
 use crate::geometry::{Geometry, Ray};
-use crate::wave::World;
 
 /// Virtual lights, in sets of which every point takes one.
 #[derive(Debug, Clone)]
@@ -22,8 +21,8 @@ const BEFORE: f32 = 0.9999;
 
 impl VirtualLights {
     /// Sends `samples` photons for each of `sets` sets.
-    pub fn send(rules: &Sunflow, world: &World, samples: u32, sets: u32, bias: f32) -> Self {
-        let sets = (0..sets.max(1)).map(|set| photons::send(rules, world, Keep::All, set * samples, samples));
+    pub fn send(senders: &Senders<'_>, samples: u32, sets: u32, bias: f32) -> Self {
+        let sets = (0..sets.max(1)).map(|set| photons::send(senders, Keep::All, set * samples, samples));
         VirtualLights { sets: sets.collect(), bias }
     }
 
