@@ -353,3 +353,21 @@ fn a_glass_ball_gathers_light_below_it() {
     let dark = pixel(34, 32);
     assert!((dark - 0.099).abs() < 0.03, "{dark}");
 }
+
+#[test]
+fn samplers_choose_the_number_of_samples() {
+    let count = |image: &str| {
+        let text = format!(
+            "image {{ resolution 8 8 aa 1 2 {image} }} {DIFFUSE}{PLANE}
+             camera {{ type pinhole eye 0 0 5 target 0 0 0 up 0 1 0 fov 40 aspect 1 }}"
+        );
+        let (scene, _) = parse(Path::new("samplers.sc"), text.as_bytes(), &MemoryLoader::default());
+        let scene = compile(&scene, &MemoryLoader::default(), &CompileOptions::default()).scene.expect("no errors");
+        render(&scene, &RenderOptions::default(), &()).expect("not cancelled").1.samples / 64
+    };
+    assert_eq!(count("sampler fast"), 1);
+    assert_eq!(count("sampler ipr"), 1);
+    assert_eq!(count("sampler multipass"), 16);
+    assert_eq!(count("sampler multipass samples 5"), 5);
+    assert_eq!(count("sampler bucket"), 4);
+}

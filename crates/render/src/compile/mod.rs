@@ -10,7 +10,7 @@ mod unsupported;
 use std::sync::Arc;
 
 use glam::Vec3;
-use jaspe_scene::description::{Camera as CameraDescription, Color, Filter, GiKind, Lens, LightKind, View};
+use jaspe_scene::description::{Camera as CameraDescription, Color, Filter, GiKind, Lens, LightKind, Sampler, View};
 use jaspe_scene::{Diagnostic, Diagnostics, Dialect, Loader, Scene};
 
 use crate::camera::Camera;
@@ -65,6 +65,8 @@ pub struct Compilation {
 
 /// The dimension of the time of a sample, out of the way of those of its path.
 const TIME: u32 = u32::MAX;
+/// Samples per pixel of the sampler `multipass` where the scene names none.
+const MULTIPASS: u32 = 16;
 /// Sunflow's picture size where the scene names none.
 const DEFAULT_SIZE: [u32; 2] = [640, 480];
 
@@ -167,9 +169,14 @@ fn sampling(scene: &Scene, dialect: Dialect, options: &CompileOptions) -> Sampli
     if let Some(count) = options.samples {
         return Sampling::Fixed { count: count.max(1) };
     }
-    match dialect {
-        Dialect::Report => Sampling::Report { edge: 1 << max.max(0), repeats },
-        Dialect::Sunflow => {
+    let sampler = scene.image.sampler.map_or(Sampler::Bucket, |sampler| sampler.value);
+    match (dialect, sampler) {
+        (Dialect::Report, _) => Sampling::Report { edge: 1 << max.max(0), repeats },
+        (Dialect::Sunflow, Sampler::Fast) => Sampling::Fixed { count: 1 },
+        (Dialect::Sunflow, Sampler::Multipass) => Sampling::Fixed {
+            count: scene.image.samples.map_or(MULTIPASS, |samples| samples.value.clamp(1, MOST_SAMPLES)),
+        },
+        (Dialect::Sunflow, Sampler::Bucket) => {
             // Sunflow goes below one sample per pixel; every pixel gets one here.
             let (min_level, max_level) = (min.max(0) as u32, max.max(0) as u32);
             if min_level == max_level {
@@ -206,8 +213,10 @@ fn sunflow(
         max_refraction: depth(depths.refraction, 4),
         max_diffuse,
     };
-    let filter = FilterSampler::new(scene.image.filter.map_or(Filter::Box, |filter| filter.value));
-    let jitter = scene.image.jitter.is_some_and(|jitter| jitter.value);
+    let multipass = scene.image.sampler.is_some_and(|sampler| sampler.value == Sampler::Multipass);
+    let filter = scene.image.filter.map_or(Filter::Box, |filter| filter.value);
+    let filter = FilterSampler::new(if multipass { Filter::Bspline } else { filter });
+    let jitter = multipass || scene.image.jitter.is_some_and(|jitter| jitter.value);
     Meaning::Sunflow { rules, camera: Camera::new(camera, size), filter, jitter }
 }
 

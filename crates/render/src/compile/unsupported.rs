@@ -2,7 +2,7 @@
 //!
 //! When something becomes supported, its arm here goes.
 
-use jaspe_scene::description::{GiKind, Sampler};
+use jaspe_scene::description::GiKind;
 use jaspe_scene::{Diagnostic, Diagnostics, Scene, Span};
 
 use crate::motion::{Motion, Shutter};
@@ -24,9 +24,6 @@ pub(super) fn report(scene: &Scene, diagnostics: &mut Diagnostics) {
     let mut skipped = |span: Span, what: String| {
         diagnostics.push(Diagnostic::warning(span, format!("skipped: {what} is not supported yet")));
     };
-    if let Some(sampler) = scene.image.sampler.filter(|sampler| sampler.value != Sampler::Bucket) {
-        skipped(sampler.span, "this sampler".to_owned());
-    }
     if let Some(gi) = &scene.gi
         && matches!(gi.kind, GiKind::Instant { bias_samples: 1.., .. })
     {
