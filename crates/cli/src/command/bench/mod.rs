@@ -3,6 +3,7 @@
 mod noise;
 #[cfg(feature = "bench-peers")]
 mod peers;
+mod scenes;
 mod stopwatch;
 
 use clap::{Args, Subcommand};
@@ -21,6 +22,7 @@ pub struct Bench {
 #[derive(Debug, Subcommand)]
 enum What {
     Noise(noise::Noise),
+    Scenes(scenes::Scenes),
 }
 
 impl Bench {
@@ -28,6 +30,7 @@ impl Bench {
     pub fn run(self) -> Result<Outcome, Failure> {
         match self.what {
             What::Noise(noise) => noise.run(),
+            What::Scenes(scenes) => scenes.run(),
         }
     }
 }
