@@ -1,13 +1,13 @@
-% Polished: the six as textures of Sunflow's shaders, under its sky. Wood that shines, marble under glass-clear varnish, a
-% teapot of brushed stone, and bumps that follow the exact slope of the noise.
+% Polished: the six as textures of Sunflow's shaders, under its sky. Varnished wood, a teapot of polished marble, brushed
+% granite, a waxed ring, and dents that follow the exact slope of the noise.
 
 image { resolution 960 540 aa 1 2 filter mitchell }
 trace-depths { diff 1 refl 4 refr 4 }
-gi { type path samples 8 }
+gi { type path samples 32 }
 
 camera { type pinhole eye 0 -9.5 3.4 target 0 0 0.85 up 0 0 1 fov 47 aspect 1.7778 }
 
-light { type sunsky up 0 0 1 east 0 1 0 sundir -0.6 -0.75 0.9 turbidity 3 samples 24 }
+light { type sunsky up 0 0 1 east 0 1 0 sundir -0.6 -0.75 0.9 turbidity 3 samples 96 }
 
 texture { name walnut type wood depth 5 scale 1.2
    diffuse_initial { "sRGB nonlinear" 0.30 0.16 0.07 } diffuse_final { "sRGB nonlinear" 0.62 0.37 0.17 } }
@@ -24,7 +24,7 @@ shader { name brushed type ward texture granite spec 0.25 0.25 0.25 rough 0.12 0
 shader { name waxed type phong texture mould spec 0.2 0.2 0.2 60 samples 4 }
 shader { name dented type shiny diff { "sRGB nonlinear" 0.75 0.42 0.16 } refl 0.5 }
 shader { name glass type glass eta 1.5 color 0.98 1.0 0.99 }
-shader { name floor type diffuse diff { "sRGB nonlinear" 0.72 0.70 0.66 } }
+shader { name floor type diffuse diff { "sRGB nonlinear" 0.55 0.52 0.47 } }
 
 modifier { name hammered type bump texture dents scale 0.06 }
 

@@ -3,6 +3,7 @@
 mod caustics;
 mod coat;
 mod direct;
+mod halton;
 mod indirect;
 mod look;
 mod photons;

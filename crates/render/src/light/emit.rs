@@ -52,7 +52,9 @@ impl Light {
                 let [low, high] = light.corners();
                 let [x, y] = place;
                 let at = Vec3::new(low.x + x * (high.x - low.x), low.y + y * (high.y - low.y), low.z);
-                Some((math::offset(at, Vec3::NEG_Z), math::cosine_hemisphere(Vec3::NEG_Z, [u, v])))
+                let (sin, cos) = math::sin_cos_turns(u);
+                let direction = Vec3::new(cos * v.sqrt(), sin * v.sqrt(), -(1.0 - v).sqrt());
+                Some((math::offset(at, Vec3::NEG_Z), direction))
             }
             Light::Triangles { triangles, .. } => {
                 let (triangle, place) = super::triangle::by_area(triangles, place)?;

@@ -6,7 +6,8 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::point::{Point, Which};
+use super::halton::halton;
+use super::point::Point;
 use super::{Batch, Coat, Path, Queues, Response, Room, Rules, Sunflow};
 use crate::geometry::{Geometry, Hits, Rays};
 use crate::light::Light;
@@ -115,7 +116,7 @@ impl<'a> Sender<'a> {
 
     /// The light of a photon, and its two uniform numbers for a place on the light.
     fn light(&self, key: SampleKey) -> (&'a Light, [f32; 2]) {
-        let [choice, v] = key.pair(0);
+        let [choice, v] = self.numbers(key, 0);
         let at = choice * self.total;
         let light = self.below.partition_point(|&below| below <= at).min(self.below.len() - 1);
         let first = if light == 0 { 0.0 } else { self.below[light - 1] };
@@ -123,13 +124,27 @@ impl<'a> Sender<'a> {
         (&self.rules.lights[light], [u, v])
     }
 
+    /// A pair of numbers of a photon. Virtual lights are so few that they should lie where Sunflow's do.
+    fn numbers(&self, key: SampleKey, pair: u32) -> [f32; 2] {
+        match self.keep {
+            Keep::Caustics => key.pair(pair),
+            Keep::All => [halton(2 * pair, key.index), halton(2 * pair + 1, key.index)],
+        }
+    }
+
     fn emit(&self, indices: std::ops::Range<u32>) -> Samples {
         let mut samples = Samples::default();
         samples.resize(indices.len());
         for (i, index) in indices.enumerate() {
             let key = SampleKey::shared(index, 0);
-            let (light, place) = self.light(key);
-            samples.set(i, light.emit(place, key.pair(1), self.keep == Keep::All), key, 1.0);
+            let (light, [u, v]) = self.light(key);
+            let [x, y] = self.numbers(key, 1);
+            let ray = match self.keep {
+                Keep::Caustics => light.emit([u, v], [x, y], false),
+                // Sunflow: what is left of the choice is for the direction.
+                Keep::All => light.emit([x, y], [u, v], true),
+            };
+            samples.set(i, ray, key, 1.0);
         }
         samples
     }
@@ -137,7 +152,7 @@ impl<'a> Sender<'a> {
     /// A photon meets a surface: it is kept, and goes on, or is lost. One number decides, as the surface's colours say.
     fn meet(&self, batch: &Batch<'_>, point: &Point<'_>, kept: &mut Vec<Photon>, queues: &mut Queues<()>) {
         let depth = point.path.depth;
-        let [choice, other] = point.key.pair(point.dimension(Which::Choice));
+        let [choice, other] = self.numbers(point.key, 2 + depth.total());
         let response = &batch.material.response;
         if let Response::Matte(_) | Response::Look(_) = response {
             let blurred = depth.diffuse > 0;
@@ -170,7 +185,10 @@ impl<'a> Sender<'a> {
                     }
                     if self.keep == Keep::All && depth.diffuse < limits.max_diffuse {
                         let turn = (choice / below).clamp(0.0, 1.0);
-                        let direction = math::cosine_hemisphere(point.surface.normal, [turn, other]);
+                        let [u, v, w] = point.frame(batch);
+                        let (sin, cos) = math::sin_cos_turns(turn);
+                        let across = (u * cos + v * sin) * other.sqrt();
+                        let direction = across + w * (1.0 - other).sqrt();
                         self.go(point, point.front, direction, tint, RayKind::Gather, queues);
                     }
                     return;
