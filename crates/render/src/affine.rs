@@ -52,6 +52,11 @@ pub(crate) fn matrix(kind: &TransformKind) -> DMat4 {
     }
 }
 
+/// Takes the unit sphere to a sphere.
+pub(crate) fn ball(center: [f32; 3], radius: f32) -> DMat4 {
+    op_matrix(&Op::Translate(center.map(f64::from))) * op_matrix(&Op::ScaleU(f64::from(radius)))
+}
+
 fn from_rows(rows: &Matrix) -> DMat4 {
     DMat4::from_cols_array_2d(rows).transpose()
 }

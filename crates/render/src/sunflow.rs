@@ -17,7 +17,7 @@ use glam::Vec3;
 use jaspe_texture::Space;
 
 use crate::environment::Environment;
-use crate::geometry::{Geometry, Hits, Ray, Rays, Rows, Scratch, Surface};
+use crate::geometry::{Geometry, Hits, Rays, Rows, Scratch, Surface};
 use crate::light::Light;
 use crate::material::{Albedo, Coat, Gloss, Response};
 use crate::options::{Look, Observer};
@@ -311,8 +311,7 @@ impl Sunflow {
     /// Queues a secondary ray, unless it would bring nothing.
     fn queue(&self, point: &Point<'_>, [origin, direction]: [Vec3; 2], path: Path, queues: &mut Queues<Vec3>) {
         if path.weight.max_element() > 0.0 && path.weight.is_finite() {
-            let ray = Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: point.skip };
-            queues.next.push(ray, path);
+            queues.next.push(point.leave(origin, direction), path);
         }
     }
 }

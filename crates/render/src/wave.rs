@@ -120,9 +120,8 @@ pub(crate) struct Samples {
 impl Samples {
     /// Room for exactly `count` samples, for those who write them one by one.
     pub fn resize(&mut self, count: usize) {
+        // Camera rays skip nothing, so what is left of the last wave will do.
         self.rays.resize(count);
-        self.rays.skip.clear();
-        self.rays.skip.resize(count);
         self.keys.resize(count, SampleKey { pixel: 0, index: 0 });
         self.weights.resize(count, 1.0);
     }

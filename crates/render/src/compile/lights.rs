@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, Vec3};
 use jaspe_scene::description::{CornellBox, Ground, LightKind};
 use jaspe_scene::{Diagnostics, Dialect, Scene};
 
 use super::bounded;
 use super::materials::{Materials, Pictures, working};
+use crate::affine;
 use crate::environment::{self, Environment};
 use crate::geometry::{MeshShape, Placement, Plan};
 use crate::light::{Ball, Ceiling, Light, Shining};
@@ -27,8 +28,10 @@ enum Seen {
     Triangles(MeshShape),
 }
 
-/// Points that lights see are looked at by so many samples at least where a scene asks for none.
-const LEAST_SAMPLES: u32 = 1;
+/// How many samples a light gets: one where the scene asks for none.
+fn light_samples(written: u32) -> u32 {
+    bounded(written).max(1)
+}
 
 pub(super) fn compile(
     scene: &Scene,
@@ -49,14 +52,13 @@ impl Lit {
         for (shape, materials) in self.shapes {
             match shape {
                 Seen::Ball { center, radius } => {
-                    let matrix =
-                        DMat4::from_translation(center.as_dvec3()) * DMat4::from_scale(DVec3::splat(f64::from(radius)));
+                    let matrix = affine::ball(center.to_array(), radius);
                     Placement::new(matrix, materials).iter().for_each(|place| plan.sphere(place));
                 }
                 Seen::Triangles(mesh) => {
-                    Placement::new(DMat4::IDENTITY, materials)
-                        .into_iter()
-                        .for_each(|place| plan.mesh(mesh.clone(), &[place]));
+                    if let Some(place) = Placement::new(DMat4::IDENTITY, materials) {
+                        plan.mesh(mesh, &[place]);
+                    }
                 }
             }
         }
@@ -85,7 +87,7 @@ impl Lit {
             }
             LightKind::Spherical { color, radiance, center, radius, samples } => {
                 let (center, radiance) = (Vec3::from_array(*center), linear(color) * *radiance);
-                let samples = bounded(*samples).max(LEAST_SAMPLES);
+                let samples = light_samples(*samples);
                 self.lights.push(Light::Ball(Ball { center, radius: *radius, radiance, samples }));
                 self.shapes.push((Seen::Ball { center, radius: *radius }, vec![materials.add(shining(radiance))]));
             }
@@ -98,7 +100,7 @@ impl Lit {
                 };
                 let corners = (0..mesh.triangles.len()).map(|i| mesh.triangle_points(i));
                 let triangles = Shining::all(corners, radiance).into();
-                self.lights.push(Light::Triangles { triangles, samples: bounded(*samples).max(LEAST_SAMPLES) });
+                self.lights.push(Light::Triangles { triangles, samples: light_samples(*samples) });
                 self.shapes.push((Seen::Triangles(mesh), vec![materials.add(shining(radiance))]));
             }
             LightKind::SunSky { up, east, sundir, turbidity, samples, ground } => {
@@ -126,7 +128,7 @@ impl Lit {
 
     fn surround(&mut self, environment: Environment, samples: [u32; 2], lock: bool) {
         let environment = Arc::new(environment);
-        let [samples, low_samples] = samples.map(|samples| bounded(samples).max(LEAST_SAMPLES));
+        let [samples, low_samples] = samples.map(light_samples);
         let light = if lock {
             Light::beams(&environment, [samples, low_samples], self.lights.len() as u64)
         } else {
@@ -141,7 +143,7 @@ impl Lit {
         let [a, b] = room.corners.map(Vec3::from_array);
         let (min, max) = (a.min(b), a.max(b));
         let radiance = working(&room.emit, Dialect::Sunflow);
-        let light = Ceiling { room: [min, max], radiance, samples: bounded(room.samples).max(LEAST_SAMPLES) };
+        let light = Ceiling { room: [min, max], radiance, samples: light_samples(room.samples) };
         let mut mesh = MeshShape::default();
         let mut rectangle = |corners: [Vec3; 4], slot: u32| {
             let first = mesh.points.len() as u32;

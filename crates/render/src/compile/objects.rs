@@ -123,10 +123,7 @@ impl Compiler<'_, '_> {
             materials.iter_mut().zip(modifiers).for_each(|(material, name)| self.modify(material, name));
         }
         let base = match geometry {
-            Written::Sphere { center, radius } => {
-                DMat4::from_translation(Vec3::from_array(*center).as_dvec3())
-                    * DMat4::from_scale(DVec3::splat(f64::from(*radius)))
-            }
+            Written::Sphere { center, radius } => affine::ball(*center, *radius),
             _ => DMat4::IDENTITY,
         };
         let matrix = match (transform, self.dialect) {

@@ -66,7 +66,7 @@ pub(crate) struct Arrival {
 }
 
 /// Rays towards a shape that shines end so much before it that they do not meet it.
-const BEFORE: f32 = 0.9999;
+pub(crate) const BEFORE: f32 = 0.9999;
 /// Triangles of one light up to which every one gets its own samples; of more, samples choose.
 const EACH: usize = 16;
 /// Samples for all triangles of a light that has more.
@@ -76,10 +76,7 @@ impl Light {
     /// The surroundings as beams from so many directions, for direct and for indirect light.
     pub fn beams(environment: &Environment, counts: [u32; 2], number: u64) -> Light {
         let beams = |count: u32| {
-            let beam = |i: u32| {
-                let (direction, radiance) = environment.sample(SampleKey::shared(i, number + 1).pair(0))?;
-                Some(Arrival { direction, distance: f32::INFINITY, irradiance: radiance / count as f32 })
-            };
+            let beam = |i: u32| beam(environment, SampleKey::shared(i, number + 1).pair(0), count as f32);
             (0..count).filter_map(beam).collect()
         };
         Light::Beams(counts.map(beams))
@@ -134,11 +131,7 @@ impl Light {
                 one_by_one(at, number, samples, |xi, n| triangle::choose(triangles, at, xi, n), each);
             }
             Light::Surroundings { environment, samples } => {
-                let look = |xi: [f32; 2], n: f32| {
-                    let (direction, radiance) = environment.sample(xi)?;
-                    Some(Arrival { direction, distance: f32::INFINITY, irradiance: radiance / n })
-                };
-                one_by_one(at, number, *samples, look, each);
+                one_by_one(at, number, *samples, |xi, n| beam(environment, xi, n), each);
             }
         }
     }
@@ -149,6 +142,13 @@ impl Receiver {
     pub fn count(&self, samples: u32) -> u32 {
         if self.indirect { samples.min(1) } else { samples.div_ceil(self.share.max(1)) }
     }
+}
+
+/// Sample `xi` of `count` of the surroundings.
+#[inline]
+fn beam(environment: &Environment, xi: [f32; 2], count: f32) -> Option<Arrival> {
+    let (direction, radiance) = environment.sample(xi)?;
+    Some(Arrival { direction, distance: f32::INFINITY, irradiance: radiance / count })
 }
 
 /// Samples of a light each of which costs its own search; `look` gets two uniform numbers and the number of samples.

@@ -66,23 +66,16 @@ impl Shining {
             None => Seen::Small(Small { to, normal, area: self.area }),
         })
     }
-
-    /// A sample by area: `density` is that of all samples, per unit of area.
-    fn arrive_by_area(&self, at: &Receiver, xi: [f32; 2], density: f32) -> Option<Arrival> {
-        let to = self.point(xi) - at.point;
-        let distance2 = to.length_squared();
-        let distance = distance2.sqrt();
-        let direction = to / distance;
-        let cosine = -direction.dot(self.normal);
-        let irradiance = self.radiance * (cosine / (distance2 * density));
-        (cosine > 0.0).then_some(Arrival { direction, distance: distance * BEFORE, irradiance })
-    }
 }
 
 /// A sample of a light of many triangles: one of them is chosen by its area.
 pub(super) fn choose(triangles: &[Shining], at: &Receiver, xi: [f32; 2], count: f32) -> Option<Arrival> {
     let (triangle, place) = by_area(triangles, xi)?;
-    triangle.arrive_by_area(at, place, count / triangle.total)
+    // By the area of all: as often as it is chosen it stands for the others.
+    let seen =
+        Small { to: triangle.corners.map(|corner| corner - at.point), normal: triangle.normal, area: triangle.total };
+    let (direction, distance, weight) = seen.sample(place);
+    (weight > 0.0).then(|| Arrival { direction, distance, irradiance: triangle.radiance * (weight / count) })
 }
 
 /// A triangle, the larger the likelier, and what is left of the two uniform numbers.

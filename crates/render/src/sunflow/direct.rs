@@ -49,7 +49,7 @@ impl Shadows {
     }
 }
 
-/// A surface that waits for light.
+/// A surface that waits for light, and is not black.
 pub(super) struct Lit<'a> {
     pub point: Point<'a>,
     pub bsdf: Bsdf,
@@ -68,8 +68,7 @@ impl Lit<'_> {
         }
         let light = point.path.weight * self.bsdf.value(direction) * irradiance * cosine;
         if light != Vec3::ZERO {
-            let ray = Ray { origin: point.front, direction, t_min: 0.0, t_max: distance, skip: point.skip };
-            shadows.push(ray, light, point.path.node);
+            shadows.push(point.toward(direction, distance), light, point.path.node);
         }
     }
 }
@@ -82,7 +81,7 @@ impl Sunflow {
                 self.shine(beams, geometry, lit, room, queues);
                 continue;
             }
-            for lit in lit.iter().filter(|lit| !lit.bsdf.is_black()) {
+            for lit in lit {
                 let point = &lit.point;
                 let at = Receiver {
                     point: point.front,
@@ -109,7 +108,7 @@ impl Sunflow {
     ) {
         let longest = beams[0].len().max(beams[1].len());
         for number in 0..longest {
-            for lit in lit.iter().filter(|lit| !lit.bsdf.is_black()) {
+            for lit in lit {
                 let point = &lit.point;
                 let beams = &beams[usize::from(point.path.depth.diffuse > 0)];
                 let share = (point.share.max(1) as usize).min(beams.len().max(1));

@@ -8,7 +8,6 @@ use super::direct::Shadows;
 use super::point::{Point, Which};
 use super::virtual_lights::VirtualLights;
 use super::{Queues, Sunflow};
-use crate::geometry::Ray;
 use crate::math;
 use crate::wave::{Path, RayKind};
 
@@ -104,8 +103,7 @@ impl Sunflow {
             let direction = math::cosine_hemisphere(point.surface.normal, xi);
             // A ray into the surface itself meets it.
             if direction.dot(point.surface.geometric) > 0.0 {
-                let ray = Ray { origin: point.front, direction, t_min: 0.0, t_max, skip: point.skip };
-                shadows.push(ray, light, point.path.node);
+                shadows.push(point.toward(direction, t_max), light, point.path.node);
             }
         }
     }

@@ -90,6 +90,8 @@ struct Sender<'a> {
     keep: Keep,
     /// How many are sent altogether.
     count: f32,
+    /// By light: what all its photons carry together.
+    powers: Vec<Vec3>,
     /// By light: the sum of what lights are chosen by, up to this one.
     below: Vec<f32>,
     total: f32,
@@ -111,17 +113,18 @@ impl<'a> Sender<'a> {
             total
         };
         let below = rules.lights.iter().map(&mut add).collect();
-        Sender { rules, keep, count: count as f32, below, total }
+        let powers = rules.lights.iter().map(Light::photon_power).collect();
+        Sender { rules, keep, count: count as f32, powers, below, total }
     }
 
-    /// The light of a photon, and its two uniform numbers for a place on the light.
-    fn light(&self, key: SampleKey) -> (&'a Light, [f32; 2]) {
+    /// The number of a photon's light, and its two uniform numbers for a place on the light.
+    fn light(&self, key: SampleKey) -> (usize, [f32; 2]) {
         let [choice, v] = self.numbers(key, 0);
         let at = choice * self.total;
         let light = self.below.partition_point(|&below| below <= at).min(self.below.len() - 1);
         let first = if light == 0 { 0.0 } else { self.below[light - 1] };
         let u = ((at - first) / (self.below[light] - first)).clamp(0.0, 1.0);
-        (&self.rules.lights[light], [u, v])
+        (light, [u, v])
     }
 
     /// A pair of numbers of a photon. Virtual lights are so few that they should lie where Sunflow's do.
@@ -138,7 +141,7 @@ impl<'a> Sender<'a> {
         for (i, index) in indices.enumerate() {
             let key = SampleKey::shared(index, 0);
             let (light, [u, v]) = self.light(key);
-            let [x, y] = self.numbers(key, 1);
+            let ([x, y], light) = (self.numbers(key, 1), &self.rules.lights[light]);
             let ray = match self.keep {
                 Keep::Caustics => light.emit([u, v], [x, y], false),
                 // Sunflow: what is left of the choice is for the direction.
@@ -163,7 +166,7 @@ impl<'a> Sender<'a> {
             if wanted {
                 // Sunflow: a photon carries what its light has, whatever the chance was to be chosen (R16).
                 let (light, _) = self.light(point.key);
-                let power = point.path.weight * light.photon_power() / self.count;
+                let power = point.path.weight * self.powers[light] / self.count;
                 let normal = point.surface.normal;
                 let number = point.key.index;
                 kept.push(Photon { point: point.front, normal, direction: point.direction, power, number });

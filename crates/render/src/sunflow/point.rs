@@ -51,6 +51,12 @@ impl Point<'_> {
         offset(self.surface.point, -self.surface.geometric)
     }
 
+    /// A ray from the front side towards something that is `t_max` away.
+    #[inline]
+    pub fn toward(&self, direction: Vec3, t_max: f32) -> Ray {
+        Ray { origin: self.front, direction, t_min: 0.0, t_max, skip: self.skip }
+    }
+
     /// A ray from here to wherever it goes.
     pub fn leave(&self, origin: Vec3, direction: Vec3) -> Ray {
         Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: self.skip }

@@ -6,7 +6,8 @@ use super::direct::Lit;
 use super::photons::{self, Keep, Photon, Senders};
 use super::point::{Point, Which};
 use super::{Queues, Room, Shadows};
-use crate::geometry::{Geometry, Ray};
+use crate::geometry::Geometry;
+use crate::light::BEFORE;
 
 /// Virtual lights, in sets of which every point takes one.
 #[derive(Debug, Clone)]
@@ -15,9 +16,6 @@ pub(crate) struct VirtualLights {
     /// What limits the light of near ones.
     bias: f32,
 }
-
-/// How close to a virtual light a shadow ray ends.
-const BEFORE: f32 = 0.9999;
 
 impl VirtualLights {
     /// Sends `samples` photons for each of `sets` sets.
@@ -59,9 +57,7 @@ impl VirtualLights {
             let form = (here * there / distance2).min(limit);
             // Sunflow: the quarter is literal (R17).
             let brings = point.path.weight * *color * light.power * (0.25 * std::f32::consts::FRAC_1_PI * form * share);
-            let t_max = distance * BEFORE;
-            let ray = Ray { origin: point.front, direction, t_min: 0.0, t_max, skip: point.skip };
-            shadows.push(ray, brings, point.path.node);
+            shadows.push(point.toward(direction, distance * BEFORE), brings, point.path.node);
         }
     }
 }

@@ -9,10 +9,10 @@ use crate::lexer::Token;
 use crate::source::{Span, Spanned};
 
 /// More photons than this are not asked for: they would fill the memory of most machines.
-const MOST_PHOTONS: i64 = 20_000_000;
+pub(super) const MOST_PHOTONS: u32 = 20_000_000;
 
 /// More rays from one point than this make no picture better.
-const MOST_SAMPLES: i64 = 1_000_000;
+pub(super) const MOST_SAMPLES: u32 = 1_000_000;
 
 /// The keywords of a `gi` block as far as they were written.
 #[derive(Debug, Default)]
@@ -228,13 +228,13 @@ impl Parser<'_> {
     /// A number of rays, brought into its range.
     pub(super) fn samples(&mut self) -> Parsed<u32> {
         let count = self.spanned(Parser::int)?;
-        Ok(self.clamped("the number of samples", count, 0, MOST_SAMPLES) as u32)
+        Ok(self.clamped("the number of samples", count, 0, MOST_SAMPLES.into()) as u32)
     }
 
     /// A number of photons, brought into its range.
     fn photon_count(&mut self) -> Parsed<u32> {
         let count = self.spanned(Parser::int)?;
-        Ok(self.clamped("the number of photons", count, 0, MOST_PHOTONS) as u32)
+        Ok(self.clamped("the number of photons", count, 0, MOST_PHOTONS.into()) as u32)
     }
 
     /// `[N] MAP GATHER RADIUS`.
@@ -242,7 +242,7 @@ impl Parser<'_> {
         let emit = if self.number_follows() { Some(self.photon_count()?) } else { None };
         let map = self.word("a kind of photon map")?;
         let gather = self.spanned(Parser::int)?;
-        let gather = self.clamped("the number of photons to gather", gather, 0, MOST_PHOTONS) as u32;
+        let gather = self.clamped("the number of photons to gather", gather, 0, MOST_PHOTONS.into()) as u32;
         Ok((emit, map, gather, self.number()?))
     }
 

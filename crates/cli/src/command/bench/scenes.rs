@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use clap::Args;
 
+use super::stopwatch::median;
 use crate::Outcome;
 use crate::failure::Failure;
 use crate::measure::{Shown, compare};
@@ -68,12 +69,12 @@ impl Scenes {
                     peer_times.push(time(&mut shell(peer, scene, &theirs), scene)?);
                 }
             }
-            let (name, time) = (scene.file_name().unwrap_or(scene.as_os_str()).to_string_lossy(), median(&mut times));
+            let (name, time) = (scene.file_name().unwrap_or(scene.as_os_str()).to_string_lossy(), median(times));
             if peer_times.is_empty() {
                 writeln!(out, "{name:32} {time:>10.3}")?;
                 continue;
             }
-            let peer_time = median(&mut peer_times);
+            let peer_time = median(peer_times);
             logarithms.push(jaspe_noise::math::ln(peer_time / time));
             let flip = flip(&ours, &theirs)?;
             writeln!(out, "{name:32} {time:>10.3} {peer_time:>10.3} {:>8.2} {flip:>8}", peer_time / time)?;
@@ -132,11 +133,6 @@ fn flip(ours: &Path, theirs: &Path) -> Result<String, Failure> {
         return Ok("sizes".to_owned());
     }
     Ok(format!("{:.4}", compare(&b, &a).0.flip))
-}
-
-fn median(times: &mut [f64]) -> f64 {
-    times.sort_by(f64::total_cmp);
-    times[times.len() / 2]
 }
 
 #[cfg(test)]

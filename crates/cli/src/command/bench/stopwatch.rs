@@ -53,7 +53,8 @@ fn time(run: &mut impl FnMut(), repeats: u32) -> f64 {
     start.elapsed().as_secs_f64() / f64::from(repeats)
 }
 
-fn median(mut numbers: Vec<f64>) -> f64 {
+/// The middle of the numbers; of none, no number.
+pub fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
     numbers.get(numbers.len() / 2).copied().unwrap_or(f64::NAN)
 }

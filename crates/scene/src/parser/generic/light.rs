@@ -1,6 +1,7 @@
 //! Lights.
 
 use super::super::Parser;
+use super::super::gi::MOST_SAMPLES;
 use super::geometry::triangle_mesh;
 use super::value::Parameters;
 use crate::description::{Color, CornellBox, Ground, Light, LightKind, Mesh, Name, Triangles};
@@ -84,5 +85,5 @@ pub(super) fn light(parser: &mut Parser<'_>, p: &mut Parameters, name: &Name, cl
 }
 
 fn samples(p: &mut Parameters, name: &str, default: u32) -> u32 {
-    p.whole(name, 0, 1_000_000).unwrap_or(default)
+    p.whole(name, 0, MOST_SAMPLES).unwrap_or(default)
 }

@@ -1,15 +1,12 @@
 //! The options of the scene: picture, depths, indirect light.
 
 use super::super::Parser;
+use super::super::gi::{MOST_PHOTONS, MOST_SAMPLES};
 use super::super::image::SAMPLERS;
 use super::super::statement::FILTERS;
 use super::value::Parameters;
 use crate::description::{Caustics, Color, Gi, GiKind, GlobalPhotons, PhotonMap};
 use crate::source::{Span, Spanned};
-
-/// Most photons and samples, as in a `.sc` file.
-const MOST_PHOTONS: u32 = 20_000_000;
-const MOST_SAMPLES: u32 = 1_000_000;
 
 /// Sets what the parameters say.
 pub(super) fn apply(parser: &mut Parser<'_>, p: &mut Parameters) {

@@ -1,5 +1,6 @@
 //! Shaders and modifiers.
 
+use super::super::gi::MOST_SAMPLES;
 use super::super::{Namespace, Parser};
 use super::unwritten;
 use super::value::Parameters;
@@ -15,7 +16,7 @@ pub(super) fn shader(parser: &mut Parser<'_>, p: &mut Parameters, name: &Name, c
         Some(_) => ColorOrTexture::Texture(p.string("texture").unwrap_or_else(|| unwritten("", span))),
         None => ColorOrTexture::Color(p.color(key).unwrap_or_else(|| gray(default))),
     };
-    let samples = |p: &mut Parameters, default: u32| p.whole("samples", 0, 1_000_000).unwrap_or(default);
+    let samples = |p: &mut Parameters, default: u32| p.whole("samples", 0, MOST_SAMPLES).unwrap_or(default);
     let specular = |p: &mut Parameters| p.color("specular").unwrap_or_else(|| gray(0.5));
     let kind = match textured.unwrap_or(&class.value) {
         "constant" => ShaderKind::Constant { color: p.color("color").unwrap_or_else(|| gray(1.0)) },
