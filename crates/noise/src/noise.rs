@@ -156,7 +156,7 @@ impl Noise {
     /// # Panics
     /// When the slices differ in length.
     pub fn fill_at<const D: usize>(&self, level: Level, points: [&[f32]; D], values: &mut [f32]) {
-        assert!(points.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        simd::assert_lengths(&points, values.len());
         if values.len() <= FEW && level == simd::level() {
             for (i, value) in values.iter_mut().enumerate() {
                 *value = self.at(points.map(|coordinates| coordinates[i]));
@@ -192,8 +192,8 @@ impl Noise {
         values: &mut [f32],
         mut gradient: [&mut [f32]; D],
     ) {
-        assert!(points.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
-        assert!(gradient.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        simd::assert_lengths(&points, values.len());
+        simd::assert_lengths(&gradient, values.len());
         Octave { noise: self, frequency: 1.0 }.fill(level, &points, values, &mut gradient);
     }
 

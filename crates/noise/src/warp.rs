@@ -106,7 +106,7 @@ impl Field {
             Field::Sum(sum) => return sum.fill_at(level, points, values),
             Field::Warp(warp) => warp,
         };
-        assert!(points.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        simd::assert_lengths(&points, values.len());
         let (mut shifted, mut displaced) = ([[0.0; CHUNK]; D], [[0.0; CHUNK]; D]);
         for (chunk, values) in values.chunks_mut(CHUNK).enumerate() {
             let count = values.len();
@@ -152,8 +152,8 @@ impl Field {
             Field::Sum(sum) => return sum.fill_with_gradient_at(level, points, values, gradient),
             Field::Warp(warp) => warp,
         };
-        assert!(points.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
-        assert!(gradient.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        simd::assert_lengths(&points, values.len());
+        simd::assert_lengths(&gradient, values.len());
         let (mut shifted, mut displaced) = ([[0.0; CHUNK]; D], [[0.0; CHUNK]; D]);
         let mut bends = [[[0.0; CHUNK]; D]; D];
         for (chunk, values) in values.chunks_mut(CHUNK).enumerate() {

@@ -1,17 +1,15 @@
 //! The band limit: filtered sums against averages over the footprint.
 
+mod common;
+
+use common::random_bits;
 use jaspe_noise::simd::Level;
 use jaspe_noise::{Basis, Combine, Noise, Sum};
 
 /// Numbers in [-1, 1), reproducible.
 fn random_numbers() -> impl FnMut() -> f32 {
-    let mut state = 88_172_645_463_325_252u64;
-    move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 40) as f32 / (1u64 << 23) as f32 - 1.0
-    }
+    let mut bits = random_bits();
+    move || (bits() >> 40) as f32 / (1u64 << 23) as f32 - 1.0
 }
 
 /// The root mean square of the difference between the filtered sum and the average of 1024 samples over the footprint.

@@ -1,16 +1,14 @@
 //! What the sums promise beside the bits.
 
+mod common;
+
+use common::random_bits;
 use jaspe_noise::{Basis, Combine, Noise, Sum};
 
 /// Points within ±50, reproducible.
 fn points(count: usize) -> Vec<[f64; 3]> {
-    let mut state = 88_172_645_463_325_252u64;
-    let mut random = || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        ((state >> 11) as f64 / (1u64 << 52) as f64 - 1.0) * 50.0
-    };
+    let mut bits = random_bits();
+    let mut random = || ((bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0) * 50.0;
     (0..count).map(|_| [random(), random(), random()]).collect()
 }
 

@@ -2,6 +2,9 @@
 
 #![allow(clippy::approx_constant, reason = "3.14 is a coordinate of a published check value")]
 
+mod common;
+
+use common::random_bits;
 use jaspe_noise::{Basis, Cellular, Combine, Feature, Metric, Noise, Sum};
 
 /// Improved noise as [Perlin 2002] tells it in prose and tables, apart from the crate's code: hashing by a doubled table
@@ -76,13 +79,8 @@ impl Listing {
 
 /// Numbers in [-1, 1), reproducible.
 fn random_numbers() -> impl FnMut() -> f64 {
-    let mut state = 88_172_645_463_325_252u64;
-    move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
+    let mut bits = random_bits();
+    move || (bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
 #[test]

@@ -1,5 +1,8 @@
 //! Domain warp: what it is, its gradients, and the same bits at every level.
 
+mod common;
+
+use common::random_bits;
 use jaspe_noise::simd::Level;
 use jaspe_noise::{Basis, Combine, Field, Noise, Sum, Warp};
 
@@ -11,13 +14,8 @@ fn nested() -> Field {
 }
 
 fn points(count: usize) -> Vec<[f64; 3]> {
-    let mut state = 88_172_645_463_325_252u64;
-    let mut random = || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        ((state >> 40) as f64 / (1u64 << 23) as f64 - 1.0) * 20.0
-    };
+    let mut bits = random_bits();
+    let mut random = || ((bits() >> 40) as f64 / (1u64 << 23) as f64 - 1.0) * 20.0;
     (0..count).map(|_| [random(), random(), random()]).collect()
 }
 

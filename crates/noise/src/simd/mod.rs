@@ -128,6 +128,14 @@ impl<K: Kernel<D>, const D: usize> Outputs<D, 1> for Alone<'_, K> {
     }
 }
 
+/// # Panics
+/// When a slice has another length.
+#[inline(always)]
+#[track_caller]
+pub(crate) fn assert_lengths<S: AsRef<[f32]>>(slices: &[S], length: usize) {
+    assert!(slices.iter().all(|slice| slice.as_ref().len() == length), "all slices have the same length");
+}
+
 /// [`map_at`] for several values.
 #[inline(always)]
 pub(crate) fn map_outputs<K: Outputs<D, N>, const D: usize, const N: usize>(
@@ -137,8 +145,8 @@ pub(crate) fn map_outputs<K: Outputs<D, N>, const D: usize, const N: usize>(
     outputs: [&mut [f32]; N],
 ) {
     let count = outputs[0].len();
-    assert!(inputs.iter().all(|input| input.len() == count), "all slices have the same length");
-    assert!(outputs.iter().all(|output| output.len() == count), "all slices have the same length");
+    assert_lengths(&inputs, count);
+    assert_lengths(&outputs, count);
     match level.min(machine_level()) {
         Level::Scalar => map_scalar(kernel, inputs, outputs),
         // SAFETY, for the three: the machine has the instructions, `machine_level` says.
@@ -196,8 +204,8 @@ pub(crate) fn sum_improved<const N: usize>(
     outputs: [&mut [f32]; N],
 ) -> usize {
     let count = outputs[0].len();
-    assert!(points.iter().all(|input| input.len() == count), "all slices have the same length");
-    assert!(outputs.iter().all(|output| output.len() == count), "all slices have the same length");
+    assert_lengths(&points, count);
+    assert_lengths(&outputs, count);
     match level.min(machine_level()) {
         // SAFETY, for both: the machine has the instructions, `machine_level` says.
         #[cfg(target_arch = "x86_64")]

@@ -204,7 +204,7 @@ impl Sum {
     /// # Panics
     /// When the slices differ in length.
     pub fn fill_at<const D: usize>(&self, level: Level, points: [&[f32]; D], values: &mut [f32]) {
-        assert!(points.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        simd::assert_lengths(&points, values.len());
         let mut done = 0;
         if self.combine.is_plain() {
             if values.len() > FEW {
@@ -250,8 +250,8 @@ impl Sum {
         values: &mut [f32],
         mut gradient: [&mut [f32]; D],
     ) {
-        assert!(points.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
-        assert!(gradient.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        simd::assert_lengths(&points, values.len());
+        simd::assert_lengths(&gradient, values.len());
         let mut done = 0;
         if let (true, [x, y, z]) = (self.combine.is_plain(), &mut gradient[..]) {
             done = self.noise.sum_fast(level, &self.terms(), &points, [&mut *values, x, y, z]);

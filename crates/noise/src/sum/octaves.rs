@@ -22,8 +22,8 @@ impl Sum {
         values: &mut [f32],
         gradient: &mut [&mut [f32]],
     ) {
-        assert!(points.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
-        assert!(gradient.iter().all(|axis| axis.len() == values.len()), "all slices have the same length");
+        simd::assert_lengths(points, values.len());
+        simd::assert_lengths(gradient, values.len());
         match (points.len(), gradient.is_empty()) {
             (1, true) => self.chunks::<1, false>(level, points, footprints, values, gradient),
             (2, true) => self.chunks::<2, false>(level, points, footprints, values, gradient),
