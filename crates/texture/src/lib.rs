@@ -26,10 +26,12 @@
 
 mod args;
 pub mod declare;
+mod finish;
 mod material;
 mod space;
 mod texture;
 
 pub use args::BuildError;
+pub use finish::{Finish, Reliefs};
 pub use space::{Frequencies, Space};
 pub use texture::Texture;

@@ -11,18 +11,22 @@ use crate::space::{Frequencies, Space};
 /// A procedural material with its arguments. Immutable; cheap to clone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
-    material: Material,
-    sum: Sum,
+    pub(crate) material: Material,
+    pub(crate) sum: Sum,
     initial: [f32; 3],
     last: [f32; 3],
     scale: f64,
     written_space: Option<Space>,
     space: Space,
     as_figures: bool,
+    /// In place of what the space and the scale say.
+    pub(crate) cells_per_unit: Option<f64>,
+    /// What the first coordinate is multiplied by where the material uses it itself.
+    pub(crate) stretch: f64,
 }
 
 /// Points that are worked on at a time; their coordinates in texture space lie on the stack.
-const BLOCK: usize = 256;
+pub(crate) const BLOCK: usize = 256;
 
 impl Texture {
     /// The declarations of all materials, in the order of the reference page.
@@ -46,6 +50,8 @@ impl Texture {
             written_space: args.space(),
             space: args.space().unwrap_or(Space::Local),
             as_figures: false,
+            cells_per_unit: None,
+            stretch: 1.0,
         })
     }
 
@@ -100,10 +106,17 @@ impl Texture {
     /// The coefficient w at a point of the texture's space (two coordinates for uv, three for the others).
     #[inline(always)]
     pub fn value<R: Real, const D: usize>(&self, point: [R; D]) -> R {
+        let (along, sum) = self.along_and_sum(point);
+        self.material.shape(along, sum)
+    }
+
+    /// What a material shapes: X.x and T(X).
+    #[inline(always)]
+    pub(crate) fn along_and_sum<R: Real, const D: usize>(&self, point: [R; D]) -> (R, R) {
         let factor = R::constant(self.factor());
         let scaled = point.map(|coordinate| coordinate * factor);
         let moved = scaled.map(|coordinate| coordinate + R::constant(self.offset::<D>()));
-        self.material.shape(scaled[0], self.sum.value(moved))
+        (scaled[0] * R::constant(self.stretch), self.sum.value(moved))
     }
 
     /// The coefficients at many points of the texture's space: one slice of coordinates per axis (two for uv, three for
@@ -124,22 +137,33 @@ impl Texture {
         for coordinates in points {
             assert_eq!(coordinates.len(), coefficients.len(), "all slices have the same length");
         }
-        let (factor, offset) = (self.factor() as f32, self.offset::<D>() as f32);
         let mut along = [0.0; BLOCK];
         let mut moved = [[0.0; BLOCK]; D];
         let mut sums = [0.0; BLOCK];
         for (block, coefficients) in coefficients.chunks_mut(BLOCK).enumerate() {
             let (start, count) = (block * BLOCK, coefficients.len());
-            let along = &mut along[..count];
-            for axis in (0..D).rev() {
-                let coordinates = &points[axis][start..start + count];
-                for ((along, moved), coordinate) in along.iter_mut().zip(&mut moved[axis]).zip(coordinates) {
-                    *along = coordinate * factor;
-                    *moved = *along + offset;
-                }
-            }
+            self.place(points, start..start + count, &mut along, &mut moved);
             self.sum.fill_at(level, moved.each_ref().map(|axis| &axis[..count]), &mut sums[..count]);
-            self.material.shape_all(level, [along, &sums[..count]], coefficients);
+            self.material.shape_all(level, [&along[..count], &sums[..count]], coefficients);
+        }
+    }
+
+    /// X.x, and X where the noise is evaluated, of the points in a range, which is no longer than a block.
+    pub(crate) fn place<const D: usize>(
+        &self,
+        points: [&[f32]; D],
+        range: std::ops::Range<usize>,
+        along: &mut [f32; BLOCK],
+        moved: &mut [[f32; BLOCK]; D],
+    ) {
+        let (factor, offset, stretch) = (self.factor() as f32, self.offset::<D>() as f32, self.stretch as f32);
+        for axis in (0..D).rev() {
+            let coordinates = &points[axis][range.clone()];
+            for ((along, moved), coordinate) in along.iter_mut().zip(&mut moved[axis]).zip(coordinates) {
+                let scaled = coordinate * factor;
+                *moved = scaled + offset;
+                *along = scaled * stretch;
+            }
         }
     }
 
@@ -180,8 +204,9 @@ impl Texture {
     }
 
     /// What a coordinate is multiplied by, a number of single precision.
-    fn factor(&self) -> f64 {
-        f64::from((f64::from(self.frequencies().of(self.space)) / self.scale) as f32)
+    pub(crate) fn factor(&self) -> f64 {
+        let of_space = || f64::from(self.frequencies().of(self.space)) / self.scale;
+        f64::from(self.cells_per_unit.unwrap_or_else(of_space) as f32)
     }
 }
 

@@ -5,6 +5,7 @@ use jaspe_noise::Real;
 use super::{Kind, parameters};
 use crate::args::Args;
 use crate::declare::Declaration;
+use crate::finish::Finish;
 use crate::space::{Frequencies, Space};
 
 /// w = T(X). The veins are the zeros of the noise.
@@ -20,6 +21,8 @@ impl Kind for Fire {
     const FIGURE_SPACE: Space = Space::Uv;
     // The figure has 10 cells per unit of v, which are 10/π per unit of length on the unit sphere, and 2.5 along x.
     const FREQUENCIES: Frequencies = Frequencies { local: 3.0, world: 3.0, uv: 10.0 };
+    /// Embers: the yellow patches swell between cracks, and all of it glows. Soot mirrors nothing.
+    const FINISH: Finish = Finish { relief: 0.15, roughness: [0.95, 0.8], emission: 1.0, tile: 4.0 };
 
     fn build(_: &Args) -> Self {
         Fire

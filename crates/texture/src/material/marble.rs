@@ -5,6 +5,7 @@ use jaspe_noise::{Combine, Real, math};
 use super::{Kind, parameters};
 use crate::args::Args;
 use crate::declare::Declaration;
+use crate::finish::Finish;
 use crate::space::{Frequencies, Space};
 
 /// w = cos(X.x + T(X)), as the report's figures; with `sum plain` w = sin(X.x + T(X)), as its formula. Negative
@@ -23,6 +24,9 @@ impl Kind for Marble {
     const FIGURE_SPACE: Space = Space::Local;
     // 10 · π is 31.
     const FREQUENCIES: Frequencies = Frequencies { local: 10.0, world: 10.0, uv: 30.0 };
+    /// Polished: hardly any relief, and the white calcite a shade softer than the dark bands.
+    const FINISH: Finish = Finish { relief: 0.03, roughness: [0.15, 0.08], emission: 0.0, tile: 2.0 };
+    const BAND: Option<f64> = Some(std::f64::consts::TAU);
 
     fn build(args: &Args) -> Self {
         Marble { combine: args.combine() }

@@ -12,6 +12,7 @@ use jaspe_noise::{Real, Sum};
 
 use crate::args::Args;
 use crate::declare::{self, Declaration, Parameter, Value};
+use crate::finish::{Finish, Height, Part};
 use crate::space::{Frequencies, Space};
 use crate::texture::Shape;
 
@@ -32,11 +33,23 @@ pub(crate) trait Kind: Sized {
     /// number.
     const OFFSET: f64 = 1.0 / 3.0;
 
+    /// Height, roughness and light of its own.
+    const FINISH: Finish;
+
+    /// The period of [`Kind::shape`] in its first argument, where it uses it.
+    const BAND: Option<f64> = None;
+
     /// From arguments that are already checked against the declaration.
     fn build(args: &Args) -> Self;
 
     /// The coefficient w from X.x (`along`) and the noise sum T(X), with X the point in texture space.
     fn shape<R: Real>(&self, along: R, sum: R) -> R;
+
+    /// The height of the surface, without a jump, in parts of [`Finish::relief`]: the coefficient, if nothing else is said.
+    #[inline(always)]
+    fn height<R: Real>(&self, along: R, sum: R) -> R {
+        self.shape(along, sum)
+    }
 
     /// The range of the coefficient, from the bounds of the sum.
     fn coefficient_range(&self, sum: [f32; 2]) -> [f32; 2] {
@@ -77,6 +90,14 @@ macro_rules! materials {
                 match self { $(Material::$kind(_) => $module::$kind::REFLECTION,)* }
             }
 
+            pub(crate) fn finish(&self) -> &'static Finish {
+                match self { $(Material::$kind(_) => &$module::$kind::FINISH,)* }
+            }
+
+            pub(crate) fn band(&self) -> Option<f64> {
+                match self { $(Material::$kind(_) => $module::$kind::BAND,)* }
+            }
+
             #[inline(always)]
             pub(crate) fn offset(&self) -> f64 {
                 match self { $(Material::$kind(_) => $module::$kind::OFFSET,)* }
@@ -90,6 +111,29 @@ macro_rules! materials {
             #[inline(always)]
             pub(crate) fn shape<R: Real>(&self, along: R, sum: R) -> R {
                 match self { $(Material::$kind(kind) => kind.shape(along, sum),)* }
+            }
+
+            #[inline(always)]
+            pub(crate) fn height<R: Real>(&self, along: R, sum: R) -> R {
+                match self { $(Material::$kind(kind) => kind.height(along, sum),)* }
+            }
+
+            pub(crate) fn height_alone(&self, level: Level, inputs: [&[f32]; 2], heights: &mut [f32]) {
+                match self {
+                    $(Material::$kind(kind) => {
+                        simd::map_at(level, &Height { kind, part: Part::Value }, inputs, heights);
+                    })*
+                }
+            }
+
+            /// The heights, and their derivatives by both arguments.
+            pub(crate) fn height_all(&self, level: Level, inputs: [&[f32]; 2], outputs: [&mut [f32]; 3]) {
+                let parts = [Part::Value, Part::Derivative(0), Part::Derivative(1)];
+                for (part, output) in parts.into_iter().zip(outputs) {
+                    match self {
+                        $(Material::$kind(kind) => simd::map_at(level, &Height { kind, part }, inputs, output),)*
+                    }
+                }
             }
 
             pub(crate) fn shape_all(&self, level: Level, inputs: [&[f32]; 2], coefficients: &mut [f32]) {

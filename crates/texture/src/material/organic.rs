@@ -5,6 +5,7 @@ use jaspe_noise::Real;
 use super::{Kind, parameters};
 use crate::args::Args;
 use crate::declare::Declaration;
+use crate::finish::Finish;
 use crate::space::{Frequencies, Space};
 
 /// w = T(X).
@@ -20,6 +21,8 @@ impl Kind for Organic {
     const FIGURE_SPACE: Space = Space::World;
     // The figures show spheres of the radius 1.5, with one cell per unit of the scene.
     const FREQUENCIES: Frequencies = Frequencies { local: 1.5, world: 1.0, uv: 5.0 };
+    /// Swollen, velvety blotches; the web between them lies low and is slightly damp.
+    const FINISH: Finish = Finish { relief: 0.25, roughness: [0.6, 0.95], emission: 0.0, tile: 4.0 };
 
     fn build(_: &Args) -> Self {
         Organic

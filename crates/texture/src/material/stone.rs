@@ -5,6 +5,7 @@ use jaspe_noise::Real;
 use super::{Kind, parameters};
 use crate::args::Args;
 use crate::declare::Declaration;
+use crate::finish::Finish;
 use crate::space::{Frequencies, Space};
 
 /// w = T(X).
@@ -20,6 +21,8 @@ impl Kind for Stone {
     const FIGURE_SPACE: Space = Space::Local;
     // 50 · π is 157.
     const FREQUENCIES: Frequencies = Frequencies { local: 50.0, world: 50.0, uv: 160.0 };
+    /// Hewn: light feldspar stands above the dark grains, whose faces catch a little more light.
+    const FINISH: Finish = Finish { relief: 0.15, roughness: [0.9, 0.6], emission: 0.0, tile: 0.5 };
 
     fn build(_: &Args) -> Self {
         Stone
@@ -28,5 +31,11 @@ impl Kind for Stone {
     #[inline(always)]
     fn shape<R: Real>(&self, _: R, sum: R) -> R {
         sum
+    }
+
+    /// Light grains stand above dark ones.
+    #[inline(always)]
+    fn height<R: Real>(&self, _: R, sum: R) -> R {
+        -sum
     }
 }

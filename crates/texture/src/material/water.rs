@@ -5,6 +5,7 @@ use jaspe_noise::Real;
 use super::{Kind, parameters};
 use crate::args::Args;
 use crate::declare::Declaration;
+use crate::finish::Finish;
 use crate::space::{Frequencies, Space};
 
 /// w = T(X).
@@ -21,6 +22,8 @@ impl Kind for Water {
     // As for fire.
     const FREQUENCIES: Frequencies = Frequencies { local: 3.0, world: 3.0, uv: 10.0 };
     const REFLECTION: f32 = 0.2;
+    /// Wet all over, and a little less smooth where the crests break.
+    const FINISH: Finish = Finish { relief: 0.12, roughness: [0.12, 0.03], emission: 0.0, tile: 4.0 };
 
     fn build(_: &Args) -> Self {
         Water
@@ -29,5 +32,11 @@ impl Kind for Water {
     #[inline(always)]
     fn shape<R: Real>(&self, _: R, sum: R) -> R {
         sum
+    }
+
+    /// The veins, where the noise vanishes, are the crests of waves: sharp above and round below.
+    #[inline(always)]
+    fn height<R: Real>(&self, _: R, sum: R) -> R {
+        -sum
     }
 }
