@@ -52,6 +52,11 @@ pub(crate) fn blend_codes<R: Real, const D: usize, const G: bool>(
 ) -> Dual<R, D> {
     let zero = R::constant(0.0);
     let (mut values, mut slopes) = ([zero; 16], [[zero; D]; 16]);
+    if D == 3 && !G {
+        let dots = R::cell_dots(codes.first_chunk().expect("sixteen"), [offset[0], offset[1], offset[D - 1]]);
+        values[..8].copy_from_slice(&dots);
+        return blend::<R, D, G>(values, None, &Curve::quintic(&offset));
+    }
     for i in 0..1 << D {
         let from = from_corner(&offset, i);
         if G {
@@ -64,11 +69,7 @@ pub(crate) fn blend_codes<R: Real, const D: usize, const G: bool>(
                 }
             }
         } else {
-            values[i] = match D {
-                1 => R::edge_dot_plane(codes[i], from[0], zero),
-                2 => R::edge_dot_plane(codes[i], from[0], from[1]),
-                _ => R::edge_dot(codes[i], from[0], from[1], from[D - 1]),
-            };
+            values[i] = R::edge_dot_plane(codes[i], from[0], if D == 1 { zero } else { from[1] });
         }
     }
     blend::<R, D, G>(values, if G { Some(slopes) } else { None }, &Curve::quintic(&offset))

@@ -118,6 +118,19 @@ pub trait Real:
         [Self::select(with_x, sign, zero), y, Self::select(with_z, second, zero)]
     }
 
+    /// [`Real::edge_dot`] of the offsets from the eight corners of a cell (bit 0 of a corner's index says whether it is the
+    /// upper one along x, bit 1 along y, bit 2 along z), given the offset from the lowest corner, which is not negative.
+    #[inline(always)]
+    fn cell_dots(codes: &[Self::Int; 8], offset: [Self; 3]) -> [Self; 8] {
+        let ([x, y, z], one) = (offset, Self::constant(1.0));
+        let (x, y, z) = ([x, x - one], [y, y - one], [z, z - one]);
+        let mut dots = [one; 8];
+        for (i, dot) in dots.iter_mut().enumerate() {
+            *dot = Self::edge_dot(codes[i], x[i & 1], y[i >> 1 & 1], z[i >> 2]);
+        }
+        dots
+    }
+
     /// [`Real::edge_dot`] for z = 0.
     #[inline(always)]
     fn edge_dot_plane(code: Self::Int, x: Self, y: Self) -> Self {

@@ -187,6 +187,12 @@ impl Terms<'_> {
     pub const ONE: Terms<'static> =
         Terms { absolute: false, frequencies: &[1.0], amplitudes: &[1.0], slopes: &[1.0], lanes: &[] };
 
+    /// Whether they are those of [`Terms::ONE`].
+    #[inline(always)]
+    pub fn are_one(&self) -> bool {
+        !self.absolute && *self.frequencies == [1.0] && *self.amplitudes == [1.0]
+    }
+
     /// How many octaves.
     #[inline(always)]
     pub fn octaves(&self) -> usize {

@@ -22,19 +22,20 @@ pub(super) struct Octave {
     pub frequency: f32,
     pub amplitude: f32,
     pub slope: f32,
-    pub absolute: bool,
 }
+
+/// What becomes of the noise: it is the value.
+pub(super) const ALONE: u8 = 0;
+/// It is added, times the amplitude.
+pub(super) const PLAIN: u8 = 1;
+/// Its absolute value is added, times the amplitude.
+pub(super) const ABSOLUTE: u8 = 2;
 
 impl Octave {
     /// That of this number.
     #[inline(always)]
     pub fn of(terms: &Terms, index: usize) -> Octave {
-        Octave {
-            frequency: terms.frequencies[index],
-            amplitude: terms.amplitudes[index],
-            slope: terms.slopes[index],
-            absolute: terms.absolute,
-        }
+        Octave { frequency: terms.frequencies[index], amplitude: terms.amplitudes[index], slope: terms.slopes[index] }
     }
 }
 
@@ -44,9 +45,9 @@ pub(super) trait Halves<const STEP: usize> {
     type Codes;
     /// Hashes the cells of the points, times the frequency.
     fn hash(&self, frequency: f32, point: Point<STEP>) -> Self::Codes;
-    /// Adds an octave at the points whose `codes` are given, which become those of `next`. `ALONE`: it is the only octave,
-    /// the frequencies are 1, and the sums are overwritten (and no zero is negative).
-    fn step<const ALONE: bool, const N: usize>(
+    /// Adds an octave at the points whose `codes` are given, which become those of `next`. `USE` is [`ALONE`] where the
+    /// frequencies and the amplitude are 1 and the sums are overwritten (no zero is negative), [`PLAIN`] or [`ABSOLUTE`].
+    fn step<const USE: u8, const N: usize>(
         &self,
         octave: &Octave,
         point: Point<STEP>,
@@ -55,7 +56,7 @@ pub(super) trait Halves<const STEP: usize> {
         next: (f32, Point<STEP>),
     );
     /// [`Halves::step`] without a next one.
-    fn finish<const ALONE: bool, const N: usize>(
+    fn finish<const USE: u8, const N: usize>(
         &self,
         octave: &Octave,
         point: Point<STEP>,
@@ -72,30 +73,58 @@ pub(super) fn sum<H: Halves<STEP>, const STEP: usize, const N: usize>(
     points: [&[f32]; 3],
     mut outputs: [&mut [f32]; N],
 ) -> usize {
+    let [x, y, z] = points;
+    let points = [x.as_chunks().0, y.as_chunks().0, z.as_chunks().0];
     let steps = outputs[0].len() / STEP;
-    let (x, y, z) = (points[0].as_chunks().0, points[1].as_chunks().0, points[2].as_chunks().0);
-    assert!(x.len() == steps && y.len() == steps && z.len() == steps);
-    let point = |i: usize| [&x[i], &y[i], &z[i]];
     if steps == 0 {
         return 0;
     }
-    let last = steps - 1;
-    if terms.octaves() == 1 {
-        let octave = Octave::of(terms, 0);
-        let mut codes = halves.hash(1.0, point(0));
-        for i in 0..last {
-            let next = (1.0, point(i + 1));
-            halves.step::<true, N>(&octave, point(i), sums(&mut outputs, i), &mut codes, next);
-        }
-        halves.finish::<true, N>(&octave, point(last), sums(&mut outputs, last), &codes);
-        return steps * STEP;
+    match (terms.are_one(), terms.absolute) {
+        (true, _) => alone(halves, points, &mut outputs),
+        (false, false) => octaves::<PLAIN, H, STEP, N>(halves, terms, points, &mut outputs),
+        (false, true) => octaves::<ABSOLUTE, H, STEP, N>(halves, terms, points, &mut outputs),
     }
-    for output in &mut outputs {
+    steps * STEP
+}
+
+/// The noise itself.
+#[inline(always)]
+fn alone<H: Halves<STEP>, const STEP: usize, const N: usize>(
+    halves: &H,
+    [x, y, z]: [&[[f32; STEP]]; 3],
+    outputs: &mut [&mut [f32]; N],
+) {
+    let steps = outputs[0].len() / STEP;
+    assert!(x.len() == steps && y.len() == steps && z.len() == steps);
+    let octave = Octave { frequency: 1.0, amplitude: 1.0, slope: 1.0 };
+    let point = |i: usize| [&x[i], &y[i], &z[i]];
+    let last = steps - 1;
+    let mut codes = halves.hash(1.0, point(0));
+    for i in 0..last {
+        let next = (1.0, point(i + 1));
+        halves.step::<ALONE, N>(&octave, point(i), sums(outputs, i), &mut codes, next);
+    }
+    halves.finish::<ALONE, N>(&octave, point(last), sums(outputs, last), &codes);
+}
+
+/// The sum of octaves.
+#[inline(always)]
+fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
+    halves: &H,
+    terms: &Terms,
+    [x, y, z]: [&[[f32; STEP]]; 3],
+    outputs: &mut [&mut [f32]; N],
+) {
+    let steps = outputs[0].len() / STEP;
+    assert!(x.len() == steps && y.len() == steps && z.len() == steps);
+    let point = |i: usize| [&x[i], &y[i], &z[i]];
+    for output in outputs.iter_mut() {
         output[..steps * STEP].fill(0.0);
     }
     if terms.octaves() == 0 {
-        return steps * STEP;
+        return;
     }
+    let last = steps - 1;
     let mut codes = halves.hash(terms.frequencies[0], point(0));
     for start in (0..steps).step_by(BLOCK / STEP) {
         let end = steps.min(start + BLOCK / STEP);
@@ -109,11 +138,10 @@ pub(super) fn sum<H: Halves<STEP>, const STEP: usize, const N: usize>(
             for i in start..end {
                 let (frequency, next) = if i + 1 == end { after } else { (octave.frequency, i + 1) };
                 let next = (frequency, point(next));
-                halves.step::<false, N>(&octave, point(i), sums(&mut outputs, i), &mut codes, next);
+                halves.step::<USE, N>(&octave, point(i), sums(outputs, i), &mut codes, next);
             }
         }
     }
-    steps * STEP
 }
 
 /// The outputs of a step.
@@ -124,7 +152,7 @@ fn sums<'a, const STEP: usize, const N: usize>(outputs: &'a mut [&mut [f32]; N],
 
 /// Adds an octave at the points of one vector of a step, from the corners' codes and the offsets in the cells.
 #[inline(always)]
-pub(super) fn add_vector<V: Vector<LANES>, const STEP: usize, const LANES: usize, const N: usize, const ALONE: bool>(
+pub(super) fn add_vector<V: Vector<LANES>, const STEP: usize, const LANES: usize, const N: usize, const USE: u8>(
     octave: &Octave,
     codes: Corners<V::Int>,
     offset: [V; 3],
@@ -135,19 +163,19 @@ pub(super) fn add_vector<V: Vector<LANES>, const STEP: usize, const LANES: usize
         if N == 4 { blend_codes::<V, 3, true>(codes, offset) } else { blend_codes::<V, 3, false>(codes, offset) };
     let (mut value, mut gradient) = (sample.value, sample.gradient);
     let zero = V::constant(0.0);
-    if octave.absolute {
+    if USE == ABSOLUTE {
         let negative = value.less(zero);
         value = value.abs();
         for part in &mut gradient {
             *part = V::select(negative, -*part, *part);
         }
     }
-    let factors = [octave.amplitude, octave.slope, octave.slope, octave.slope];
     for (i, sum) in sums.iter_mut().enumerate() {
-        let (sums, _) = sum.as_chunks_mut();
-        let term = if i == 0 { value } else { gradient[i - 1] } * V::constant(f64::from(factors[i]));
+        let sum = &mut sum.as_chunks_mut().0[vector];
+        let part = if i == 0 { value } else { gradient[i - 1] };
+        let factor = if i == 0 { octave.amplitude } else { octave.slope };
         // (The sum with zero makes −0 to +0.)
-        let before = if ALONE { zero } else { V::load(&sums[vector]) };
-        (before + term).store(&mut sums[vector]);
+        let sums = if USE == ALONE { part + zero } else { V::load(sum) + part * V::splat(factor) };
+        sums.store(sum);
     }
 }

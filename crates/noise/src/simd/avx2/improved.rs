@@ -11,7 +11,7 @@ use super::{F32x8, I32x8};
 use crate::basis::Tables;
 use crate::basis::corners::Corners;
 use crate::number::{Integer, Real};
-use crate::simd::pipeline::{self, Halves, Octave, Point, Sums};
+use crate::simd::pipeline::{self, ABSOLUTE, ALONE, Halves, Octave, PLAIN, Point, Sums};
 use crate::simd::{Terms, Vector};
 use crate::table::CornerTables;
 
@@ -42,10 +42,14 @@ pub(in crate::simd) fn sum<const N: usize>(
             let octave = Octave::of(terms, index);
             let (mut cells, mut codes) = ([Stage::EMPTY; 3], Stage::EMPTY);
             for (cells, numbers) in cells.iter_mut().zip(point) {
-                find_cells::<false>(octave.frequency, numbers, &mut cells.0[0]);
+                find_cells::<PLAIN>(octave.frequency, numbers, &mut cells.0[0]);
             }
             hash(tables, &cells, 0, &mut codes);
-            add_vector::<false, LANES, N>(&codes.0[0], &octave, point, &mut sums, 0);
+            if terms.absolute {
+                add_vector::<ABSOLUTE, LANES, N>(&codes.0[0], &octave, point, &mut sums, 0);
+            } else {
+                add_vector::<PLAIN, LANES, N>(&codes.0[0], &octave, point, &mut sums, 0);
+            }
         }
     }
     count / LANES * LANES
@@ -75,7 +79,7 @@ impl Halves<STEP> for Staged<'_> {
     fn hash(&self, frequency: f32, point: Point<STEP>) -> Codes {
         let (mut cells, mut codes) = ([Stage::EMPTY; 3], Codes { stages: [Stage::EMPTY; 2], current: 0 });
         // SAFETY, here and below: the machine has AVX2.
-        unsafe { find_step_cells::<false>(frequency, point, &mut cells) };
+        unsafe { find_step_cells::<PLAIN>(frequency, point, &mut cells) };
         for i in 0..VECTORS {
             hash(self.0, &cells, i, &mut codes.stages[0]);
         }
@@ -83,7 +87,7 @@ impl Halves<STEP> for Staged<'_> {
     }
 
     #[inline(always)]
-    fn step<const ALONE: bool, const N: usize>(
+    fn step<const USE: u8, const N: usize>(
         &self,
         octave: &Octave,
         point: Point<STEP>,
@@ -92,18 +96,18 @@ impl Halves<STEP> for Staged<'_> {
         (frequency, next): (f32, Point<STEP>),
     ) {
         let mut cells = [Stage::EMPTY; 3];
-        unsafe { find_step_cells::<ALONE>(frequency, next, &mut cells) };
+        unsafe { find_step_cells::<USE>(frequency, next, &mut cells) };
         let [even, odd] = &mut codes.stages;
         let (current, next) = if codes.current == 0 { (&*even, odd) } else { (&*odd, even) };
         for i in 0..VECTORS {
             hash(self.0, &cells, i, next);
-            unsafe { add_vector::<ALONE, STEP, N>(&current.0[i], octave, point, &mut sums, i) };
+            unsafe { add_vector::<USE, STEP, N>(&current.0[i], octave, point, &mut sums, i) };
         }
         codes.current = 1 - codes.current;
     }
 
     #[inline(always)]
-    fn finish<const ALONE: bool, const N: usize>(
+    fn finish<const USE: u8, const N: usize>(
         &self,
         octave: &Octave,
         point: Point<STEP>,
@@ -111,25 +115,25 @@ impl Halves<STEP> for Staged<'_> {
         codes: &Codes,
     ) {
         for i in 0..VECTORS {
-            unsafe { add_vector::<ALONE, STEP, N>(&codes.stages[codes.current].0[i], octave, point, &mut sums, i) };
+            unsafe { add_vector::<USE, STEP, N>(&codes.stages[codes.current].0[i], octave, point, &mut sums, i) };
         }
     }
 }
 
 /// Eight coordinates, times the frequency; as they are where the octave is alone, since its frequency is 1.
 #[inline(always)]
-fn load<const ALONE: bool>(numbers: &[f32; LANES], frequency: f32) -> F32x8 {
+fn load<const USE: u8>(numbers: &[f32; LANES], frequency: f32) -> F32x8 {
     let numbers = F32x8::load(numbers);
-    if ALONE { numbers } else { numbers * F32x8::constant(f64::from(frequency)) }
+    if USE == ALONE { numbers } else { numbers * F32x8::constant(f64::from(frequency)) }
 }
 
 /// The cells of the points of a step.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn find_step_cells<const ALONE: bool>(frequency: f32, points: Point<STEP>, cells: &mut [Stage; 3]) {
+fn find_step_cells<const USE: u8>(frequency: f32, points: Point<STEP>, cells: &mut [Stage; 3]) {
     for (cells, numbers) in cells.iter_mut().zip(points) {
         for (cells, numbers) in cells.0.iter_mut().zip(numbers.as_chunks().0) {
-            find_cells::<ALONE>(frequency, numbers, cells);
+            find_cells::<USE>(frequency, numbers, cells);
         }
     }
 }
@@ -137,8 +141,8 @@ fn find_step_cells<const ALONE: bool>(frequency: f32, points: Point<STEP>, cells
 /// The cells of eight coordinates.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn find_cells<const ALONE: bool>(frequency: f32, numbers: &[f32; LANES], cells: &mut [u32; LANES]) {
-    let cell = _mm256_cvttps_epi32(_mm256_floor_ps(load::<ALONE>(numbers, frequency).0));
+fn find_cells<const USE: u8>(frequency: f32, numbers: &[f32; LANES], cells: &mut [u32; LANES]) {
+    let cell = _mm256_cvttps_epi32(_mm256_floor_ps(load::<USE>(numbers, frequency).0));
     // SAFETY: there is room for eight.
     unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), cell) };
 }
@@ -157,7 +161,7 @@ fn hash(tables: &CornerTables, cells: &[Stage; 3], vector: usize, codes: &mut St
 /// Adds one octave at eight points of a step.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
-fn add_vector<const ALONE: bool, const STEP: usize, const N: usize>(
+fn add_vector<const USE: u8, const STEP: usize, const N: usize>(
     codes: &[u32; LANES],
     octave: &Octave,
     point: Point<STEP>,
@@ -168,10 +172,10 @@ fn add_vector<const ALONE: bool, const STEP: usize, const N: usize>(
     let codes = I32x8(unsafe { _mm256_loadu_si256(codes.as_ptr().cast()) });
     let mut offset = [F32x8::constant(0.0); 3];
     for axis in 0..3 {
-        let position = load::<ALONE>(&point[axis].as_chunks().0[vector], octave.frequency);
+        let position = load::<USE>(&point[axis].as_chunks().0[vector], octave.frequency);
         offset[axis] = position - position.floor();
     }
-    pipeline::add_vector::<F32x8, STEP, LANES, N, ALONE>(octave, corners(codes), offset, sums, vector);
+    pipeline::add_vector::<F32x8, STEP, LANES, N, USE>(octave, corners(codes), offset, sums, vector);
 }
 
 /// The codes of each corner, from all of them as [`CornerTables::hash`] has them (where the highest bit is that of x).

@@ -9,18 +9,11 @@ use std::arch::x86_64::*;
 use super::{F32x16, I32x16};
 use crate::basis::Tables;
 use crate::number::{Integer, Real};
-use crate::simd::pipeline::{self, Halves, Octave, Point, Sums};
+use crate::simd::pipeline::{self, ALONE, Halves, Octave, PLAIN, Point, Sums};
 use crate::simd::{Terms, Vector};
 
 /// Points that take part in one step.
 const STEP: usize = 64;
-
-/// The tables in registers.
-struct Registers {
-    bytes: [__m512i; 4],
-    next: [__m512i; 4],
-    edges: [__m512i; 4],
-}
 
 /// The sums (and gradients) at the first points, a multiple of 64 of them; returns how many.
 #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
@@ -30,26 +23,24 @@ pub(in crate::simd) fn sum<const N: usize>(
     points: [&[f32]; 3],
     outputs: [&mut [f32]; N],
 ) -> usize {
-    let registers = Registers {
-        bytes: load_table(&tables.permutation.bytes),
-        next: load_table(&tables.permutation.next),
-        edges: load_table(&tables.edges.bytes),
-    };
     let whole = outputs[0].len() / STEP * STEP;
-    pipeline::sum(&registers, terms, points.map(|axis| &axis[..whole]), outputs)
+    pipeline::sum(&InRegisters(tables), terms, points.map(|axis| &axis[..whole]), outputs)
 }
 
-impl Halves<STEP> for Registers {
+/// The kernel whose codes stay in registers. It exists only where the machine has the instructions.
+struct InRegisters<'a>(&'a Tables);
+
+impl Halves<STEP> for InRegisters<'_> {
     type Codes = [__m512i; 4];
 
     #[inline(always)]
     fn hash(&self, frequency: f32, point: Point<STEP>) -> Self::Codes {
-        // SAFETY, here and below: tables are in registers only where the machine has them.
-        unsafe { hash::<false>(self, frequency, point) }
+        // SAFETY, here and below: the machine has the instructions.
+        unsafe { hash::<PLAIN>(self.0, frequency, point) }
     }
 
     #[inline(always)]
-    fn step<const ALONE: bool, const N: usize>(
+    fn step<const USE: u8, const N: usize>(
         &self,
         octave: &Octave,
         point: Point<STEP>,
@@ -57,22 +48,20 @@ impl Halves<STEP> for Registers {
         codes: &mut Self::Codes,
         (frequency, next): (f32, Point<STEP>),
     ) {
-        unsafe {
-            let next = hash::<ALONE>(self, frequency, next);
-            add_step::<ALONE, N>(codes, octave, point, sums);
-            *codes = next;
-        }
+        let next = unsafe { hash::<USE>(self.0, frequency, next) };
+        add_step::<USE, N>(codes, octave, point, sums);
+        *codes = next;
     }
 
     #[inline(always)]
-    fn finish<const ALONE: bool, const N: usize>(
+    fn finish<const USE: u8, const N: usize>(
         &self,
         octave: &Octave,
         point: Point<STEP>,
         sums: Sums<STEP, N>,
         codes: &[__m512i; 4],
     ) {
-        unsafe { add_step::<ALONE, N>(codes, octave, point, sums) };
+        add_step::<USE, N>(codes, octave, point, sums);
     }
 }
 
@@ -90,69 +79,83 @@ fn load_table(bytes: &[u8; 256]) -> [__m512i; 4] {
 
 /// Sixteen coordinates of 64, times the frequency; as they are where the octave is alone, since its frequency is 1.
 #[inline(always)]
-fn load<const ALONE: bool>(numbers: &[f32; STEP], group: usize, frequency: f32) -> F32x16 {
+fn load<const USE: u8>(numbers: &[f32; STEP], group: usize, frequency: f32) -> F32x16 {
     let numbers = F32x16::load(&numbers.as_chunks().0[group]);
-    if ALONE { numbers } else { numbers * F32x16::constant(f64::from(frequency)) }
+    if USE == ALONE { numbers } else { numbers * F32x16::constant(f64::from(frequency)) }
 }
 
 /// Adds one octave at 64 points, whose cells are hashed already.
-#[inline]
-#[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
-fn add_step<const ALONE: bool, const N: usize>(
+#[inline(always)]
+fn add_step<const USE: u8, const N: usize>(
     codes: &[__m512i; 4],
     octave: &Octave,
     point: Point<STEP>,
     mut sums: Sums<STEP, N>,
 ) {
-    for group in 0..4 {
-        let mut corners = [I32x16(codes[0]); 16];
-        for column in 0..4 {
-            // The bits of the code at the lower end, and of that at the upper end.
-            let bit = group as u32 * 8;
-            corners[column] = I32x16(codes[column]).shift_right(bit);
-            corners[column + 4] = I32x16(codes[column]).shift_right(bit + 4);
-        }
-        let mut offset = [F32x16::constant(0.0); 3];
-        for axis in 0..3 {
-            let position = load::<ALONE>(point[axis], group, octave.frequency);
-            offset[axis] = position - position.floor();
-        }
-        pipeline::add_vector::<F32x16, STEP, 16, N, ALONE>(octave, corners, offset, &mut sums, group);
+    // (Written out, so that the shifts are by constants.)
+    add_vector::<0, USE, N>(codes, octave, point, &mut sums);
+    add_vector::<1, USE, N>(codes, octave, point, &mut sums);
+    add_vector::<2, USE, N>(codes, octave, point, &mut sums);
+    add_vector::<3, USE, N>(codes, octave, point, &mut sums);
+}
+
+/// Adds one octave at sixteen of 64 points.
+#[inline(always)]
+fn add_vector<const GROUP: usize, const USE: u8, const N: usize>(
+    codes: &[__m512i; 4],
+    octave: &Octave,
+    point: Point<STEP>,
+    sums: &mut Sums<STEP, N>,
+) {
+    let mut corners = [I32x16(codes[0]); 16];
+    for column in 0..4 {
+        // The bits of the code at the lower end, and of that at the upper end.
+        let bit = GROUP as u32 * 8;
+        corners[column] = I32x16(codes[column]).shift_right(bit);
+        corners[column + 4] = I32x16(codes[column]).shift_right(bit + 4);
     }
+    let mut offset = [F32x16::constant(0.0); 3];
+    for axis in 0..3 {
+        let position = load::<USE>(point[axis], GROUP, octave.frequency);
+        offset[axis] = position - position.floor();
+    }
+    pipeline::add_vector::<F32x16, STEP, 16, N, USE>(octave, corners, offset, sums, GROUP);
 }
 
 /// The edge codes of the four columns over each cell. The byte `group` of the lane `i` belongs to the point
 /// 16 · group + i; its low four bits are the code at the lower end, its high ones that at the upper end.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi,avx512vbmi2")]
-fn hash<const ALONE: bool>(tables: &Registers, frequency: f32, points: Point<STEP>) -> [__m512i; 4] {
-    let x = cells::<ALONE>(points[0], frequency);
-    let y = cells::<ALONE>(points[1], frequency);
-    let z = cells::<ALONE>(points[2], frequency);
+fn hash<const USE: u8>(tables: &Tables, frequency: f32, points: Point<STEP>) -> [__m512i; 4] {
+    let (bytes, next) = (load_table(&tables.permutation.bytes), load_table(&tables.permutation.next));
+    let edges = load_table(&tables.edges.bytes);
+    let x = cells::<USE>(points[0], frequency);
+    let y = cells::<USE>(points[1], frequency);
+    let z = cells::<USE>(points[2], frequency);
     let mask = _mm512_movepi8_mask(x);
-    let left = _mm512_add_epi8(lookup(&tables.bytes, x, mask), y);
-    let right = _mm512_add_epi8(lookup(&tables.next, x, mask), y);
+    let left = _mm512_add_epi8(lookup(&bytes, x, mask), y);
+    let right = _mm512_add_epi8(lookup(&next, x, mask), y);
     let (left_mask, right_mask) = (_mm512_movepi8_mask(left), _mm512_movepi8_mask(right));
     let columns = [
-        _mm512_add_epi8(lookup(&tables.bytes, left, left_mask), z),
-        _mm512_add_epi8(lookup(&tables.bytes, right, right_mask), z),
-        _mm512_add_epi8(lookup(&tables.next, left, left_mask), z),
-        _mm512_add_epi8(lookup(&tables.next, right, right_mask), z),
+        _mm512_add_epi8(lookup(&bytes, left, left_mask), z),
+        _mm512_add_epi8(lookup(&bytes, right, right_mask), z),
+        _mm512_add_epi8(lookup(&next, left, left_mask), z),
+        _mm512_add_epi8(lookup(&next, right, right_mask), z),
     ];
     [
-        lookup(&tables.edges, columns[0], _mm512_movepi8_mask(columns[0])),
-        lookup(&tables.edges, columns[1], _mm512_movepi8_mask(columns[1])),
-        lookup(&tables.edges, columns[2], _mm512_movepi8_mask(columns[2])),
-        lookup(&tables.edges, columns[3], _mm512_movepi8_mask(columns[3])),
+        lookup(&edges, columns[0], _mm512_movepi8_mask(columns[0])),
+        lookup(&edges, columns[1], _mm512_movepi8_mask(columns[1])),
+        lookup(&edges, columns[2], _mm512_movepi8_mask(columns[2])),
+        lookup(&edges, columns[3], _mm512_movepi8_mask(columns[3])),
     ]
 }
 
 /// The low bytes of 64 cells: the byte `group` of the lane `i` belongs to the coordinate 16 · group + i.
 #[inline]
 #[target_feature(enable = "avx512f,avx512vbmi2")]
-fn cells<const ALONE: bool>(numbers: &[f32; STEP], frequency: f32) -> __m512i {
+fn cells<const USE: u8>(numbers: &[f32; STEP], frequency: f32) -> __m512i {
     let group = |group| {
-        let numbers = load::<ALONE>(numbers, group, frequency).0;
+        let numbers = load::<USE>(numbers, group, frequency).0;
         _mm512_cvt_roundps_epi32::<{ _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC }>(numbers)
     };
     // Each step shifts the bytes so far down, and one in at the top.

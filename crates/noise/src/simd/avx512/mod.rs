@@ -175,6 +175,23 @@ impl Real for F32x16 {
             |table: &[f32; 16]| F32x16(unsafe { _mm512_permutexvar_ps(code.0, _mm512_loadu_ps(table.as_ptr())) });
         [part(&EDGE_X), part(&EDGE_Y), part(&EDGE_Z)]
     }
+    /// Of an edge's two components the first is along x or y, the second along y or z. Each is chosen, with its sign, by one
+    /// instruction that takes some bits from one number and some from another: where x and z are negative and y is not, the
+    /// bit that takes the sign is free to say which.
+    #[inline(always)]
+    fn cell_dots(codes: &[I32x16; 8], [x, y, z]: [Self; 3]) -> [Self; 8] {
+        let (one, sign) = (Self::constant(1.0), Self::constant(-0.0));
+        let negative = |number: Self| F32x16(unsafe { _mm512_or_ps(number.0, sign.0) });
+        let (x, y, z) = ([negative(x), negative(one - x)], [y, one - y], [negative(z), negative(one - z)]);
+        let mut dots = [one; 8];
+        for (i, dot) in dots.iter_mut().enumerate() {
+            let upper = [i & 1, i >> 1 & 1, i >> 2];
+            let y = y[upper[1]];
+            let first = choose(codes[i], &CHOICES[0][upper[0]][upper[1]], x[upper[0]], y);
+            *dot = first + choose(codes[i], &CHOICES[1][upper[2]][upper[1]], z[upper[2]], y);
+        }
+        dots
+    }
     #[inline(always)]
     fn edge_dot_plane(code: I32x16, x: Self, y: Self) -> Self {
         unsafe {
@@ -189,6 +206,43 @@ impl Real for F32x16 {
 const EDGE_X: [f32; 16] = [1., 1., 1., 1., 0., 0., 1., 1., -1., -1., -1., -1., 0., 0., -1., -1.];
 const EDGE_Y: [f32; 16] = [1., -1., 0., 0., 1., 1., 1., 0., -1., 1., 0., 0., -1., -1., -1., 0.];
 const EDGE_Z: [f32; 16] = [0., 0., 1., -1., 1., -1., 0., -1., 0., 0., -1., 1., -1., 1., 0., 1.];
+
+/// Bits of `yes` where those of the word at the code are set, else of `no`.
+#[inline(always)]
+fn choose(code: I32x16, words: &Words, yes: F32x16, no: F32x16) -> F32x16 {
+    const CHOOSE: i32 = 0xca;
+    unsafe {
+        let choice = _mm512_permutexvar_epi32(code.0, _mm512_load_si512(words.0.as_ptr().cast()));
+        let (yes, no) = (_mm512_castps_si512(yes.0), _mm512_castps_si512(no.0));
+        F32x16(_mm512_castsi512_ps(_mm512_ternarylogic_epi32::<CHOOSE>(choice, yes, no)))
+    }
+}
+
+/// Words for sixteen lanes.
+#[repr(align(64))]
+struct Words([i32; 16]);
+
+/// What [`F32x16::cell_dots`] chooses with, by code: for the components along x or y, and along z or y; at the lower and the
+/// upper end along x (or z); at both ends along y.
+static CHOICES: [[[Words; 2]; 2]; 2] = {
+    const fn words(outer: &[f32; 16], end: usize, end_y: usize) -> Words {
+        let mut words = [0; 16];
+        let mut code = 0;
+        while code < 16 {
+            let is_outer = outer[code] != 0.0;
+            let (component, end) = if is_outer { (outer[code], end) } else { (EDGE_Y[code], end_y) };
+            // From the upper end a point is seen in the negative direction.
+            let negative = (component < 0.0) != (end == 1);
+            words[code] = if is_outer { i32::MAX } else { 0 } | if negative { i32::MIN } else { 0 };
+            code += 1;
+        }
+        Words(words)
+    }
+    const fn ends(outer: &[f32; 16]) -> [[Words; 2]; 2] {
+        [[words(outer, 0, 0), words(outer, 0, 1)], [words(outer, 1, 0), words(outer, 1, 1)]]
+    }
+    [ends(&EDGE_X), ends(&EDGE_Z)]
+};
 
 impl Vector<16> for F32x16 {
     #[inline(always)]
