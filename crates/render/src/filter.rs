@@ -1,61 +1,94 @@
-//! Reconstruction filters, sampled: a sample position is drawn from the filter's own shape, so that every sample counts
-//! for one pixel only ([Ernst, Stamminger, Greiner 2006] "Filter Importance Sampling").
+//! Reconstruction filters: how much of its neighbours' light a pixel takes.
+//!
+//! Samples lie in their own pixel, whose mean they make, so that tiles never write into each other. When the picture is
+//! complete, every pixel takes from its neighbours what the filter says. A mean over a pixel has been filtered by a box already:
+//! the weights are such that both together have the moments of the filter up to the fifth, and so do to whatever is wider than
+//! a pixel what the filter does. Neighbours share their noise so, and a wide filter makes pictures as calm as it promises.
 
 use jaspe_scene::description::Filter;
 
+use crate::film::{Film, Pixel};
 use crate::math;
 
-/// Steps of the tabulated distribution over the filter's width.
-const STEPS: usize = 1024;
+/// Weights of a pixel, of those next to it and of those next but one, in a row or column; together 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Taps([f32; 3]);
 
-/// A filter ready to be sampled, separable in x and y.
-#[derive(Debug, Clone)]
-pub(crate) struct FilterSampler {
-    /// Offset in pixels for a uniform number, at `STEPS + 1` even steps.
-    inverse: Vec<f32>,
-    kind: Filter,
-    /// What a sample counts: one over the share of the positive lobes.
-    gain: f32,
-}
+impl Taps {
+    /// Every pixel for itself.
+    pub const NONE: Taps = Taps([1.0, 0.0, 0.0]);
 
-impl FilterSampler {
-    pub fn new(kind: Filter) -> Self {
+    /// For pixels that are means over their area.
+    pub fn over_areas(kind: Filter) -> Taps {
         let width = width(kind);
-        let at = |i: usize| ((i as f64 + 0.5) / STEPS as f64 - 0.5) * width;
-        let values: Vec<f64> = (0..STEPS).map(|i| value(kind, at(i))).collect();
-        let (signed, total) = values.iter().fold((0.0, 0.0), |(s, t), v| (s + v, t + v.abs()));
-        let mut inverse = Vec::with_capacity(STEPS + 1);
-        let mut bin = 0;
-        let mut below = 0.0;
-        for step in 0..=STEPS {
-            let target = total * step as f64 / STEPS as f64;
-            while bin < STEPS - 1 && below + values[bin].abs() < target {
-                below += values[bin].abs();
-                bin += 1;
+        let steps = 4096;
+        let [mut area, mut second, mut fourth] = [0.0; 3];
+        for i in 0..steps {
+            let x = ((f64::from(i) + 0.5) / f64::from(steps) - 0.5) * width;
+            let (value, square) = (value(kind, x), x * x);
+            area += value;
+            second += value * square;
+            fourth += value * square * square;
+        }
+        // A box at distance k has the moments k² + 1/12 and k⁴ + k²/2 + 1/80.
+        let (second, fourth) = (second / area - 1.0 / 12.0, fourth / area - 1.0 / 80.0);
+        let far = (fourth - 1.5 * second) / 24.0;
+        let near = 0.5 * second - 4.0 * far;
+        Taps::new(near, far)
+    }
+
+    /// For pixels that are single samples at their centre.
+    pub fn over_points(kind: Filter) -> Taps {
+        let at = |x: f64| if x <= 0.5 * width(kind) { value(kind, x) } else { 0.0 };
+        let total = at(0.0) + 2.0 * (at(1.0) + at(2.0));
+        Taps::new(at(1.0) / total, at(2.0) / total)
+    }
+
+    fn new(near: f64, far: f64) -> Taps {
+        // What is nothing but rounding should not cost a pass over the picture.
+        let [near, far] = [near, far].map(|tap| if tap.abs() < 1e-4 { 0.0 } else { tap as f32 });
+        Taps([1.0 - 2.0 * (near + far), near, far])
+    }
+
+    /// How many pixels on either side count.
+    pub fn reach(self) -> u32 {
+        let Taps([_, near, far]) = self;
+        if far != 0.0 { 2 } else { u32::from(near != 0.0) }
+    }
+
+    /// Filters a picture in place. At its borders only what is inside counts.
+    pub fn apply(self, film: &mut Film) {
+        let reach = self.reach() as usize;
+        if reach == 0 {
+            return;
+        }
+        let (width, height) = (film.width as usize, film.height as usize);
+        // Rows that are filtered along themselves and wait for those below.
+        let mut rows: [Vec<Pixel>; 5] = std::array::from_fn(|_| vec![[0.0; 4]; width]);
+        for next in 0..height + reach {
+            if next < height {
+                let row = &film.pixels[next * width..][..width];
+                rows[next % 5].iter_mut().enumerate().for_each(|(x, out)| *out = self.weigh(x, width, |at| row[at]));
             }
-            let inside = if values[bin] == 0.0 { 0.0 } else { ((target - below) / values[bin].abs()).clamp(0.0, 1.0) };
-            inverse.push((((bin as f64 + inside) / STEPS as f64 - 0.5) * width) as f32);
+            if let Some(y) = next.checked_sub(reach) {
+                let row = &mut film.pixels[y * width..][..width];
+                row.iter_mut().enumerate().for_each(|(x, out)| *out = self.weigh(y, height, |at| rows[at % 5][x]));
+            }
         }
-        FilterSampler { inverse, kind, gain: (total / signed) as f32 }
     }
 
-    /// The offset from the pixel's centre for two uniform numbers, and what the sample counts (negative in the
-    /// negative lobes; 1 on average).
-    #[inline]
-    pub fn sample(&self, [u, v]: [f32; 2]) -> ([f32; 2], f32) {
-        if self.kind == Filter::Box {
-            return ([u - 0.5, v - 0.5], 1.0);
+    /// The weighted mean around place `at` of `count`.
+    #[inline(always)]
+    fn weigh(self, at: usize, count: usize, pixel: impl Fn(usize) -> Pixel) -> Pixel {
+        let reach = self.reach() as usize;
+        let (mut sum, mut total) = ([0.0; 4], 0.0);
+        for from in at.saturating_sub(reach)..(at + reach + 1).min(count) {
+            let weight = self.0[from.abs_diff(at)];
+            let pixel = pixel(from);
+            (0..4).for_each(|k| sum[k] += weight * pixel[k]);
+            total += weight;
         }
-        let ((x, wx), (y, wy)) = (self.sample_axis(u), self.sample_axis(v));
-        ([x, y], wx * wy)
-    }
-
-    fn sample_axis(&self, u: f32) -> (f32, f32) {
-        let at = u * STEPS as f32;
-        let i = (at as usize).min(STEPS - 1);
-        let x = self.inverse[i] + (self.inverse[i + 1] - self.inverse[i]) * (at - i as f32);
-        let negative = value(self.kind, f64::from(x)) < 0.0;
-        (x, if negative { -self.gain } else { self.gain })
+        if at >= reach && at + reach < count { sum } else { sum.map(|sum| sum / total) }
     }
 }
 
@@ -109,6 +142,7 @@ fn cubic(x: f64, b: f64, c: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::Encoding;
 
     const ALL: [Filter; 9] = [
         Filter::Box,
@@ -122,27 +156,67 @@ mod tests {
         Filter::Bspline,
     ];
 
+    fn cosine(turns: f64) -> f64 {
+        math::sin_cos_degrees(360.0 * turns).1
+    }
+
+    /// What a filter makes of a wave of so many turns per pixel.
+    fn response(kind: Filter, frequency: f64) -> f64 {
+        let (mut area, mut wave) = (0.0, 0.0);
+        for i in 0..4000 {
+            let x = ((f64::from(i) + 0.5) / 4000.0 - 0.5) * width(kind);
+            area += value(kind, x);
+            wave += value(kind, x) * cosine(frequency * x);
+        }
+        wave / area
+    }
+
     #[test]
-    fn a_sampled_filter_integrates_a_wave_as_the_filter_does() {
+    fn pixels_and_taps_do_to_a_wave_what_the_filter_does() {
         for kind in ALL {
-            let sampler = FilterSampler::new(kind);
-            let n = 512;
-            let (mut mean, mut wave) = (0.0, 0.0);
-            for i in 0..n {
-                let ([x, _], weight) = sampler.sample([(i as f32 + 0.5) / n as f32, 0.5]);
-                // The weight of the other axis at its centre is the gain alone.
-                let weight = f64::from(weight / if kind == Filter::Box { 1.0 } else { sampler.gain });
-                mean += weight / n as f64;
-                wave += weight * math::sin_cos_degrees(90.0 + 70.0 * f64::from(x)).0 / n as f64;
+            let Taps([own, near, far]) = Taps::over_areas(kind);
+            assert!((own + 2.0 * (near + far) - 1.0).abs() < 1e-6);
+            for frequency in [0.05, 0.1, 0.15] {
+                let [own, near, far] = [own, near, far].map(f64::from);
+                let taps = own + 2.0 * (near * cosine(frequency) + far * cosine(2.0 * frequency));
+                let (ours, exact) = (taps * response(Filter::Box, frequency), response(kind, frequency));
+                assert!((ours - exact).abs() < 0.01, "{kind:?} at {frequency}: {ours} against {exact}");
             }
-            let (mut area, mut exact) = (0.0, 0.0);
-            for i in 0..4000 {
-                let x = ((i as f64 + 0.5) / 4000.0 - 0.5) * width(kind);
-                area += value(kind, x);
-                exact += value(kind, x) * math::sin_cos_degrees(90.0 + 70.0 * x).0;
+        }
+        assert_eq!(Taps::over_areas(Filter::Box), Taps::NONE);
+    }
+
+    #[test]
+    fn points_are_weighted_by_the_filter_itself() {
+        assert_eq!(Taps::over_points(Filter::Box), Taps::NONE);
+        // Hats, cardinal splines and sines pass through the samples.
+        for kind in [Filter::Triangle, Filter::CatmullRom, Filter::Sinc] {
+            assert_eq!(Taps::over_points(kind), Taps::NONE, "{kind:?}");
+        }
+        let Taps([own, near, far]) = Taps::over_points(Filter::Bspline);
+        assert!((own - 2.0 / 3.0).abs() < 1e-6 && (near - 1.0 / 6.0).abs() < 1e-6 && far == 0.0);
+        let Taps([own, near, far]) = Taps::over_points(Filter::Gaussian);
+        assert!((near / own - (-1f32).exp()).abs() < 1e-3 && far == 0.0);
+    }
+
+    #[test]
+    fn light_is_spread_and_kept() {
+        for kind in ALL {
+            let taps = Taps::over_areas(kind);
+            let mut film = Film::new(9, 9, Encoding::Linear);
+            film.pixels[4 * 9 + 4] = [1.0; 4];
+            taps.apply(&mut film);
+            let total: f32 = film.pixels.iter().map(|pixel| pixel[1]).sum();
+            assert!((total - 1.0).abs() < 1e-5, "{kind:?}: {total}");
+            let Taps([own, near, far]) = taps;
+            for (x, y, wanted) in [(4, 4, own * own), (5, 4, own * near), (4, 2, own * far), (3, 5, near * near)] {
+                assert_eq!(film.pixels[y * 9 + x][0], wanted, "{kind:?} at {x}, {y}");
             }
-            assert!((mean - 1.0).abs() < 0.01, "{kind:?}: mean {mean}");
-            assert!((wave - exact / area).abs() < 0.01, "{kind:?}: {wave} against {}", exact / area);
+            let mut even = Film::new(3, 1, Encoding::Linear);
+            even.pixels.fill([0.25, 0.5, 0.75, 1.0]);
+            taps.apply(&mut even);
+            let near = |pixel: &Pixel| pixel.iter().zip([0.25, 0.5, 0.75, 1.0]).all(|(a, b)| (a - b).abs() < 1e-6);
+            assert!(even.pixels.iter().all(near), "{kind:?}: {:?}", even.pixels);
         }
     }
 }

@@ -162,7 +162,9 @@ impl Report {
                 let Vec2 { x: u, y: v } = (b - a) * hit.u + (c - a) * hit.v;
                 Vec2::new(u.abs(), if v < 0.0 { 1.0 - v.abs() } else { v })
             }
-            Shape::Ellipsoid | Shape::Spheres(_) | Shape::Analytic(_) => geometry.uv(hit, p),
+            Shape::Ellipsoid | Shape::Spheres(_) | Shape::SpheresInstance(_) | Shape::Analytic(_) => {
+                geometry.uv(hit, p)
+            }
         }
     }
 

@@ -22,24 +22,22 @@ const TILE: u32 = 32;
 /// Sums over the samples of one pixel.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sum {
-    /// Colour and coverage, weighted.
+    /// Colour and coverage.
     color: [f32; 4],
-    /// Weights.
-    weight: f32,
+    count: f32,
 }
 
 impl Sum {
-    fn add(&mut self, color: Vec3, covered: bool, weight: f32) {
-        self.color[0] += color.x * weight;
-        self.color[1] += color.y * weight;
-        self.color[2] += color.z * weight;
-        self.color[3] += if covered { weight } else { 0.0 };
-        self.weight += weight;
+    fn add(&mut self, color: Vec3, covered: bool) {
+        self.color[0] += color.x;
+        self.color[1] += color.y;
+        self.color[2] += color.z;
+        self.color[3] += if covered { 1.0 } else { 0.0 };
+        self.count += 1.0;
     }
 
     fn mean(&self) -> Pixel {
-        // Over the weights and not the count: where all samples agree, negative lobes leave no trace.
-        if self.weight > 0.0 { self.color.map(|sum| sum / self.weight) } else { [0.0; 4] }
+        if self.count > 0.0 { self.color.map(|sum| sum / self.count) } else { [0.0; 4] }
     }
 }
 
@@ -158,7 +156,7 @@ impl<R: Rules> Default for Room<R> {
 struct Pass {
     first: u32,
     end: u32,
-    /// Sums start anew: a single sample at the centre does not belong to the filtered ones.
+    /// Sums start anew: a single sample at the centre is none of those that spread over the pixel.
     restart: bool,
 }
 
@@ -194,6 +192,8 @@ struct Job<'a, R> {
     observer: &'a dyn Observer,
     /// What is asked for.
     crop: Rect,
+    /// What the filter needs for it.
+    frame: Rect,
     /// What is rendered: one pixel more on each side, if decisions need neighbours.
     region: Rect,
     done: AtomicU64,
@@ -207,12 +207,14 @@ impl<'a, R: Rules> Job<'a, R> {
             let (x1, y1) = (x1.clamp(1, width), y1.clamp(1, height));
             [x0.min(x1 - 1), y0.min(y1 - 1), x1, y1]
         });
-        let margin = u32::from(matches!(scene.sampling, Sampling::Adaptive { .. }));
-        let [x0, y0, x1, y1] = crop;
-        let region =
-            [x0.saturating_sub(margin), y0.saturating_sub(margin), (x1 + margin).min(width), (y1 + margin).min(height)];
+        let wider = |Rect([x0, y0, x1, y1]): Rect, by: u32| {
+            Rect([x0.saturating_sub(by), y0.saturating_sub(by), (x1 + by).min(width), (y1 + by).min(height)])
+        };
+        let (crop, adaptive) = (Rect(crop), matches!(scene.sampling, Sampling::Adaptive { .. }));
+        let frame = wider(crop, scene.taps().reach());
+        let region = wider(frame, u32::from(adaptive));
         let (done, total) = (AtomicU64::new(0), AtomicU64::new(0));
-        Job { scene, rules, options, observer, crop: Rect(crop), region: Rect(region), done, total }
+        Job { scene, rules, options, observer, crop, frame, region, done, total }
     }
 
     fn passes(&self) -> Result<(Film, Stats), Cancelled> {
@@ -237,7 +239,19 @@ impl<'a, R: Rules> Job<'a, R> {
                 film
             }
         };
-        Ok((film, stats))
+        Ok((self.finish(film), stats))
+    }
+
+    /// Filters the frame, and cuts out what is asked for.
+    fn finish(&self, mut frame: Film) -> Film {
+        self.scene.taps().apply(&mut frame);
+        if self.frame == self.crop {
+            return frame;
+        }
+        let [x0, y0, x1, y1] = self.crop.0;
+        let row = |y: u32| &frame.pixels[self.frame.index(x0, y)..][..(x1 - x0) as usize];
+        let pixels = (y0..y1).flat_map(|y| row(y).iter().copied()).collect();
+        Film { width: x1 - x0, height: y1 - y0, pixels, ..frame }
     }
 
     /// The tiles of the region, row by row.
@@ -334,7 +348,7 @@ impl<'a, R: Rules> Job<'a, R> {
         for (i, &slot) in slots.iter().enumerate() {
             let sum = &mut tile.sums[slot as usize];
             for k in i * each..(i + 1) * each {
-                sum.add(colors[k], covered[k], samples.weights[k]);
+                sum.add(colors[k], covered[k]);
             }
             if looks {
                 let spread = &mut tile.spreads[slot as usize];
@@ -351,7 +365,7 @@ impl<'a, R: Rules> Job<'a, R> {
     fn refine(&self, tiles: &mut [Tile], first: bool, threshold: f32) {
         let choose = |tile: &Tile| {
             let [x0, y0, x1, y1] = tile.rect.0;
-            let [cx0, cy0, cx1, cy1] = self.crop.0;
+            let [cx0, cy0, cx1, cy1] = self.frame.0;
             let inner = (y0.max(cy0)..y1.min(cy1)).flat_map(|y| (x0.max(cx0)..x1.min(cx1)).map(move |x| (x, y)));
             let chosen = inner.filter(|&(x, y)| {
                 let slot = tile.rect.index(x, y);
@@ -375,20 +389,20 @@ impl<'a, R: Rules> Job<'a, R> {
         rows.flat_map(move |row| columns.clone().map(move |column| (column, row))).filter(move |&at| at != (x, y))
     }
 
-    /// A film for what is asked for.
+    /// A film for the frame.
     fn film(&self) -> Film {
         let encoding = match self.scene.meaning {
             Meaning::Sunflow { .. } => Encoding::Linear,
             Meaning::Report { .. } => Encoding::Display,
         };
-        Film::new(self.crop.width(), self.crop.height(), encoding)
+        Film::new(self.frame.width(), self.frame.height(), encoding)
     }
 
-    /// Writes a tile to the film, as far as it is asked for.
+    /// Writes a tile to the film, as far as the frame goes.
     fn develop(&self, tile: &Tile, film: &mut Film) {
-        let [x0, y0, x1, y1] = tile.rect.meet(self.crop).0;
+        let [x0, y0, x1, y1] = tile.rect.meet(self.frame).0;
         for y in y0..y1 {
-            let (from, to) = (tile.rect.index(x0, y), self.crop.index(x0, y));
+            let (from, to) = (tile.rect.index(x0, y), self.frame.index(x0, y));
             let count = (x1 - x0) as usize;
             for (pixel, sum) in film.pixels[to..to + count].iter_mut().zip(&tile.sums[from..from + count]) {
                 *pixel = sum.mean();
@@ -405,9 +419,9 @@ fn differ((a, i): (&Tile, usize), (b, j): (&Tile, usize), threshold: f32) -> boo
         return true;
     }
     let (a, b) = (&a.sums[i], &b.sums[j]);
-    // The test is the same at any scale, so sums over crossed weights do for means, without divisions.
+    // The test is the same at any scale, so sums over crossed counts do for means, without divisions.
     a.color.iter().zip(&b.color).any(|(x, y)| {
-        let (x, y) = (x * b.weight, y * a.weight);
+        let (x, y) = (x * b.count, y * a.count);
         (x - y).abs() > threshold * (x + y).abs()
     })
 }

@@ -111,8 +111,6 @@ pub(crate) struct Samples {
     /// Rays that end before they begin where the lens sees nothing.
     pub rays: Rays,
     pub keys: Vec<SampleKey>,
-    /// What each counts in its pixel.
-    pub weights: Vec<f32>,
     /// How many each pixel has once all are traced.
     pub of: u32,
 }
@@ -123,17 +121,15 @@ impl Samples {
         // Camera rays skip nothing, so what is left of the last wave will do.
         self.rays.resize(count);
         self.keys.resize(count, SampleKey { pixel: 0, index: 0 });
-        self.weights.resize(count, 1.0);
     }
 
     /// Writes sample `i`; a ray of `None` sees nothing.
-    pub fn set(&mut self, i: usize, ray: Option<(Vec3, Vec3)>, key: SampleKey, weight: f32) {
+    pub fn set(&mut self, i: usize, ray: Option<(Vec3, Vec3)>, key: SampleKey) {
         let (origin, direction) = ray.unwrap_or((Vec3::ZERO, Vec3::Z));
         self.rays.origin.set(i, origin);
         self.rays.direction.set(i, direction);
         self.rays.t_max[i] = if ray.is_some() { f32::INFINITY } else { -1.0 };
         self.keys[i] = key;
-        self.weights[i] = weight;
     }
 }
 

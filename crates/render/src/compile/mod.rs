@@ -15,7 +15,7 @@ use jaspe_scene::{Diagnostic, Diagnostics, Dialect, Loader, Scene};
 
 use crate::camera::Camera;
 use crate::environment::Environment;
-use crate::filter::FilterSampler;
+use crate::filter::Taps;
 use crate::geometry::{Geometry, Plan};
 use crate::light::Light;
 use crate::motion::Shutter;
@@ -39,7 +39,7 @@ pub struct CompiledScene {
 /// What depends on the dialect.
 #[derive(Debug)]
 pub(crate) enum Meaning {
-    Sunflow { rules: Sunflow, camera: Camera, filter: FilterSampler, jitter: bool },
+    Sunflow { rules: Sunflow, camera: Camera, filter: Filter, jitter: bool },
     Report { rules: Report },
 }
 
@@ -84,25 +84,34 @@ impl CompiledScene {
         }
     }
 
+    /// What pixels take from their neighbours.
+    pub(crate) fn taps(&self) -> Taps {
+        match (&self.meaning, self.sampling) {
+            (Meaning::Report { .. }, _) => Taps::NONE,
+            (Meaning::Sunflow { filter, .. }, Sampling::Fixed { count: 1 }) => Taps::over_points(*filter),
+            (Meaning::Sunflow { filter, .. }, _) => Taps::over_areas(*filter),
+        }
+    }
+
     /// Aims the samples of a wave.
     pub(crate) fn aim(&self, shots: &Shots<'_>, seed: u64, samples: &mut Samples) {
         samples.of = shots.of;
         match &self.meaning {
-            &Meaning::Sunflow { ref camera, ref filter, jitter, .. } => {
+            &Meaning::Sunflow { ref camera, jitter, .. } => {
                 samples.resize(shots.count());
                 for (i, ([x, y], index)) in shots.iter().enumerate() {
                     let key = SampleKey::new(x, y, index, seed);
                     // A single sample stands for the pixel's centre. Several lie alike in all pixels, so that edges
                     // come out smooth; with `jitter`, every pixel has its own.
-                    let ([dx, dy], weight) = match (shots.of, jitter) {
-                        (1, _) => ([0.0; 2], 1.0),
-                        (_, false) => filter.sample(SampleKey::shared(index, seed).pair(0)),
-                        (_, true) => filter.sample(key.pair(0)),
+                    let [dx, dy] = match (shots.of, jitter) {
+                        (1, _) => [0.5; 2],
+                        (_, false) => SampleKey::shared(index, seed).pair(0),
+                        (_, true) => key.pair(0),
                     };
                     let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
                     let time = if camera.is_moving() { key.pair(TIME)[0] } else { 0.5 };
-                    let ray = camera.ray(x as f32 + 0.5 + dx, y as f32 + 0.5 + dy, lens, time);
-                    samples.set(i, ray, key, weight);
+                    let ray = camera.ray(x as f32 + dx, y as f32 + dy, lens, time);
+                    samples.set(i, ray, key);
                 }
             }
             Meaning::Report { rules } => {
@@ -215,7 +224,7 @@ fn sunflow(
     };
     let multipass = scene.image.sampler.is_some_and(|sampler| sampler.value == Sampler::Multipass);
     let filter = scene.image.filter.map_or(Filter::Box, |filter| filter.value);
-    let filter = FilterSampler::new(if multipass { Filter::Bspline } else { filter });
+    let filter = if multipass { Filter::Bspline } else { filter };
     let jitter = multipass || scene.image.jitter.is_some_and(|jitter| jitter.value);
     Meaning::Sunflow { rules, camera: Camera::new(camera, size), filter, jitter }
 }
@@ -322,7 +331,7 @@ fn note_darkness(scene: &Scene, compiled: &CompiledScene, diagnostics: &mut Diag
     for i in 0..PROBE[0] * PROBE[1] {
         let at = |k: usize, cell: u32| (cell as f32 + 0.5) / PROBE[k] as f32 * compiled.size[k] as f32;
         let ray = camera.ray(at(0, i % PROBE[0]), at(1, i / PROBE[0]), [0.5; 2], 0.5);
-        samples.set(i as usize, ray, SampleKey::new(i, 0, 0, RenderOptions::default().seed), 1.0);
+        samples.set(i as usize, ray, SampleKey::new(i, 0, 0, RenderOptions::default().seed));
     }
     let mut workspace = Workspace::default();
     workspace.trace(&compiled.world, rules, &mut samples, true);

@@ -16,7 +16,7 @@ mod traverse;
 #[cfg(test)]
 mod tests;
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 use crate::affine::Affine;
 use packet::Packet;
@@ -147,17 +147,21 @@ pub(crate) enum Shape {
     MeshInstance(u32),
     /// A unit sphere under a map that is no similarity.
     Ellipsoid,
-    /// Index into the sets of spheres; the set is in object space.
+    /// Index into the sets of spheres; the set is in world space.
     Spheres(u32),
+    /// Index into the sets of spheres; the set is in object space.
+    SpheresInstance(u32),
     /// Index into the shapes that are met by a formula; the shape is in object space.
     Analytic(u32),
 }
 
-/// Spheres of one size, in their own space.
+/// Many spheres that are one object, in the world where they are seen once, in their own space where instances share them.
 #[derive(Debug, Clone)]
 pub(crate) struct SphereSet {
-    pub centers: Vec<Vec3>,
-    pub radius: f32,
+    /// Centres, and radii as the fourth.
+    pub spheres: Vec<Vec4>,
+    /// Whether each has the texture coordinates of a sphere.
+    pub uv: bool,
 }
 
 /// One visible object.
@@ -188,7 +192,7 @@ impl Geometry {
     pub fn is_flat(&self, object: u32) -> bool {
         match self.objects[object as usize].shape {
             Shape::Plane(_) | Shape::Mesh(_) | Shape::MeshInstance(_) => true,
-            Shape::Sphere { .. } | Shape::Ellipsoid | Shape::Spheres(_) => false,
+            Shape::Sphere { .. } | Shape::Ellipsoid | Shape::Spheres(_) | Shape::SpheresInstance(_) => false,
             Shape::Analytic(index) => self.tree.analytic.shapes[index as usize].is_flat(),
         }
     }

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, DVec3, Vec3, Vec4};
 
 use super::analytic::{Analytic, Leaf, Leaves};
 use super::bvh::{self, Aabb, Child, Item, Kind, Node};
@@ -107,11 +107,21 @@ impl Plan {
     }
 
     /// Spheres in object space and all their appearances.
-    pub fn spheres(&mut self, set: SphereSet, places: &[Placement]) {
+    pub fn spheres(&mut self, mut set: SphereSet, places: &[Placement]) {
         let index = self.sphere_sets.len() as u32;
-        for place in places {
-            let object = self.object(Shape::Spheres(index), place);
-            self.instances.push((object, Shared::Spheres(index), place.world_from_object));
+        if let [place] = places
+            && let Some(scale) = affine::similarity_scale(place.world_from_object)
+        {
+            for sphere in &mut set.spheres {
+                let center = place.world_from_object.transform_point3(sphere.truncate().as_dvec3()).as_vec3();
+                *sphere = center.extend((f64::from(sphere.w) * scale) as f32);
+            }
+            self.object(Shape::Spheres(index), place);
+        } else {
+            for place in places {
+                let object = self.object(Shape::SpheresInstance(index), place);
+                self.instances.push((object, Shared::Spheres(index), place.world_from_object));
+            }
         }
         self.sphere_sets.push(set);
     }
@@ -134,9 +144,13 @@ impl Plan {
             Shape::Mesh(mesh) => Some((&self.meshes[mesh as usize], object as u32)),
             _ => None,
         })));
-        roots.extend(builder.spheres_of(self.objects.iter().enumerate().filter_map(|(object, o)| match o.shape {
-            Shape::Sphere { center, radius } => Some((center, radius, object as u32)),
-            _ => None,
+        roots.extend(builder.spheres_of((0..).zip(&self.objects).flat_map(|(object, o)| {
+            let (single, set) = match o.shape {
+                Shape::Sphere { center, radius } => (Some(center.extend(radius)), &[][..]),
+                Shape::Spheres(set) => (None, &self.sphere_sets[set as usize].spheres[..]),
+                _ => (None, &[][..]),
+            };
+            named(single.into_iter().chain(set.iter().copied()), object)
         })));
         roots.extend(builder.instances_of(&self.instances, &shared, &self.objects));
         roots.extend(builder.analytics_of(self.analytics, &self.objects));
@@ -162,16 +176,19 @@ impl Plan {
         for &(_, shape, _) in &self.instances {
             trees.entry(shape).or_insert_with(|| match shape {
                 Shared::Mesh(mesh) => builder.triangles_of(std::iter::once((&self.meshes[mesh as usize], none))),
-                Shared::UnitSphere => builder.spheres_of(std::iter::once((Vec3::ZERO, 1.0, none))),
+                Shared::UnitSphere => builder.spheres_of(named([Vec3::ZERO.extend(1.0)], none)),
                 Shared::Spheres(set) => {
-                    let SphereSet { centers, radius } = &self.sphere_sets[set as usize];
-                    let named = (0..).zip(centers);
-                    builder.named_spheres(named.map(|(index, &c)| (c, *radius, Id { object: none, index })))
+                    builder.spheres_of(named(self.sphere_sets[set as usize].spheres.iter().copied(), none))
                 }
             });
         }
         trees
     }
+}
+
+/// The spheres of an object, numbered.
+fn named(spheres: impl IntoIterator<Item = Vec4>, object: u32) -> impl Iterator<Item = (Vec4, Id)> {
+    spheres.into_iter().zip(0..).map(move |(sphere, index)| (sphere, Id { object, index }))
 }
 
 /// The vectors g with g_i · e_j = 1 where i = j and 0 elsewhere, in the plane of the edges.
@@ -245,32 +262,27 @@ impl Builder {
         })
     }
 
-    /// A tree over spheres: centre, radius and the object that their hits name.
-    fn spheres_of(&mut self, spheres: impl Iterator<Item = (Vec3, f32, u32)>) -> Option<(Child, Aabb)> {
-        self.named_spheres(spheres.map(|(center, radius, object)| (center, radius, Id { object, index: 0 })))
-    }
-
-    /// A tree over spheres: centre, radius and name.
-    fn named_spheres(&mut self, spheres: impl Iterator<Item = (Vec3, f32, Id)>) -> Option<(Child, Aabb)> {
-        let spheres: Vec<_> = spheres.filter(|(center, radius, _)| center.is_finite() && radius.is_finite()).collect();
-        let mut items: Vec<Item> = spheres
-            .iter()
-            .enumerate()
-            .map(|(index, &(center, radius, _))| {
+    /// A tree over spheres: centre with radius, and name.
+    fn spheres_of(&mut self, spheres: impl Iterator<Item = (Vec4, Id)>) -> Option<(Child, Aabb)> {
+        let spheres: Vec<_> = spheres.filter(|(sphere, _)| sphere.is_finite()).collect();
+        let mut items: Vec<Item> = (0..)
+            .zip(&spheres)
+            .map(|(index, &(sphere, _))| {
                 // Rounding may put a point of the sphere just outside the exact box.
+                let (center, radius) = (sphere.truncate(), sphere.w);
                 let reach = Vec3::splat(radius * 1.000_001) + center.abs() * 1e-6;
-                Item { bounds: Aabb { min: center - reach, max: center + reach }, index: index as u32 }
+                Item { bounds: Aabb { min: center - reach, max: center + reach }, index }
             })
             .collect();
         let blocks = &mut self.spheres;
         bvh::build(&mut items, 8, &mut self.nodes, &mut |items| {
             let mut block = SphereBlock::EMPTY;
             for (lane, item) in items.iter().enumerate() {
-                let (center, radius, id) = spheres[item.index as usize];
+                let (sphere, id) = spheres[item.index as usize];
                 for axis in 0..3 {
-                    block.centers[axis][lane] = center[axis];
+                    block.centers[axis][lane] = sphere[axis];
                 }
-                block.radii[lane] = radius;
+                block.radii[lane] = sphere.w;
                 block.ids[lane] = id;
             }
             blocks.push(block);

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::analytic;
 use super::simd::{self, Simd};
-use super::{Geometry, Hit, Hits, Id, MeshShape, Ray, Rays, Rows, Shape};
+use super::{Geometry, Hit, Hits, Id, MeshShape, Ray, Rays, Rows, Shape, SphereSet};
 use crate::math;
 
 /// A point on a surface, in the world.
@@ -98,11 +98,7 @@ impl Geometry {
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let object = &self.objects[hit.id.object as usize];
         match object.shape {
-            Shape::Sphere { center, radius } => {
-                let normal = (ray.origin + ray.direction * hit.t - center).normalize_or(Vec3::Z);
-                // Back onto the sphere: the distance along the ray is the less exact the farther it reached.
-                Surface { point: center + normal * radius, geometric: normal, normal }
-            }
+            Shape::Sphere { center, radius } => on_sphere(ray, hit, center, radius),
             Shape::Plane(index) => {
                 let plane = &self.planes[index as usize];
                 let point = ray.origin + ray.direction * hit.t;
@@ -122,12 +118,15 @@ impl Geometry {
                 Surface { point: object.world_from_object.point(local), geometric: normal, normal }
             }
             Shape::Spheres(index) => {
-                let set = &self.sphere_sets[index as usize];
-                let center = set.centers[hit.id.index as usize];
-                let local = object.object_from_world.point(ray.origin + ray.direction * hit.t) - center;
+                let sphere = self.sphere_sets[index as usize].spheres[hit.id.index as usize];
+                on_sphere(ray, hit, sphere.truncate(), sphere.w)
+            }
+            Shape::SpheresInstance(index) => {
+                let sphere = self.sphere_sets[index as usize].spheres[hit.id.index as usize];
+                let local = object.object_from_world.point(ray.origin + ray.direction * hit.t) - sphere.truncate();
                 let outward = local.normalize_or(Vec3::Z);
                 let normal = object.object_from_world.transposed(outward).normalize_or(Vec3::Z);
-                let point = object.world_from_object.point(center + outward * set.radius);
+                let point = object.world_from_object.point(sphere.truncate() + outward * sphere.w);
                 Surface { point, geometric: normal, normal }
             }
             Shape::Analytic(index) => analytic::surface(&*self.tree.analytic.shapes[index as usize], object, ray, hit),
@@ -139,7 +138,10 @@ impl Geometry {
         let object = &self.objects[hit.id.object as usize];
         match object.shape {
             Shape::Sphere { .. } | Shape::Ellipsoid => sphere_uv(object.object_from_world.point(point)),
-            Shape::Spheres(_) => Vec2::ZERO,
+            Shape::Spheres(index) | Shape::SpheresInstance(index) => {
+                let set = &self.sphere_sets[index as usize];
+                if set.uv { sphere_uv(self.outward(set, hit, point)) } else { Vec2::ZERO }
+            }
             Shape::Analytic(index) => {
                 let local = object.object_from_world.point(point);
                 self.tree.analytic.shapes[index as usize].uv(hit.id.index as usize, [hit.u, hit.v], local)
@@ -180,7 +182,12 @@ impl Geometry {
                 let local = object.object_from_world.point(point);
                 Some(object.world_from_object.vector(Vec3::new(-local.y, local.x, 0.0)))
             }
-            Shape::Plane(_) | Shape::Spheres(_) => None,
+            Shape::Plane(_) => None,
+            Shape::Spheres(index) | Shape::SpheresInstance(index) => {
+                let set = &self.sphere_sets[index as usize];
+                let outward = self.outward(set, hit, point);
+                set.uv.then(|| object.world_from_object.vector(Vec3::new(-outward.y, outward.x, 0.0)))
+            }
             Shape::Analytic(index) => {
                 let local = object.object_from_world.point(point);
                 let shape = &self.tree.analytic.shapes[index as usize];
@@ -195,6 +202,17 @@ impl Geometry {
                 (area != 0.0).then(|| ((v1 - v2) * d1.x - (v0 - v2) * d2.x) / area)
             }
         }
+    }
+
+    /// The way out of one of many spheres at a point in the world, as a unit vector in their object's space.
+    fn outward(&self, set: &SphereSet, hit: &Hit, point: Vec3) -> Vec3 {
+        let object = &self.objects[hit.id.object as usize];
+        let center = set.spheres[hit.id.index as usize].truncate();
+        let outward = match object.shape {
+            Shape::SpheresInstance(_) => object.object_from_world.point(point) - center,
+            _ => object.object_from_world.vector(point - center),
+        };
+        outward.normalize_or(Vec3::Z)
     }
 
     /// The material at every hit; `none` where there is no hit.
@@ -239,6 +257,14 @@ pub(super) fn sphere_uv(p: Vec3) -> Vec2 {
 
 /// In place of a material: different triangles have different ones.
 const MANY: u32 = u32::MAX;
+
+/// The surface of a sphere in the world.
+#[inline]
+fn on_sphere(ray: &Ray, hit: &Hit, center: Vec3, radius: f32) -> Surface {
+    let normal = (ray.origin + ray.direction * hit.t - center).normalize_or(Vec3::Z);
+    // Back onto the sphere: the distance along the ray is the less exact the farther it reached.
+    Surface { point: center + normal * radius, geometric: normal, normal }
+}
 
 /// Barycentric interpolation.
 fn blend<T: std::ops::Mul<f32, Output = T> + std::ops::Add<Output = T>>([a, b, c]: [T; 3], hit: &Hit) -> T {

@@ -97,7 +97,7 @@ fn brute_force(geometry: &Geometry, ray: &Ray) -> Hit {
     for (number, object) in geometry.objects.iter().enumerate() {
         let number = number as u32;
         let mut local = *ray;
-        if matches!(object.shape, Shape::Ellipsoid | Shape::MeshInstance(_) | Shape::Spheres(_)) {
+        if matches!(object.shape, Shape::Ellipsoid | Shape::MeshInstance(_) | Shape::SpheresInstance(_)) {
             local.origin = object.object_from_world.point(ray.origin);
             local.direction = object.object_from_world.vector(ray.direction);
         }
@@ -105,10 +105,9 @@ fn brute_force(geometry: &Geometry, ray: &Ray) -> Hit {
             Shape::Plane(_) => {}
             Shape::Sphere { center, radius } => brute_sphere(&local, center, radius, (number, 0), &mut best),
             Shape::Ellipsoid => brute_sphere(&local, Vec3::ZERO, 1.0, (number, 0), &mut best),
-            Shape::Spheres(set) => {
-                let set = &geometry.sphere_sets[set as usize];
-                for (index, &center) in (0..).zip(&set.centers) {
-                    brute_sphere(&local, center, set.radius, (number, index), &mut best);
+            Shape::Spheres(set) | Shape::SpheresInstance(set) => {
+                for (index, sphere) in (0..).zip(&geometry.sphere_sets[set as usize].spheres) {
+                    brute_sphere(&local, sphere.truncate(), sphere.w, (number, index), &mut best);
                 }
             }
             Shape::Analytic(_) => {
@@ -290,9 +289,10 @@ fn sets_of_spheres_and_shapes_with_a_formula_are_met_as_by_brute_force() {
                 let stretched = DMat4::from_scale(DVec3::new(size, size, size * 1.5));
                 place(DMat4::from_translation(random.point().as_dvec3()) * turned * stretched)
             };
-            let centers: Vec<Vec3> = (0..200).map(|_| random.point()).collect();
+            let spheres: Vec<_> = (0..200).map(|_| random.point().extend(0.05)).collect();
             let places = [here(), at(&mut random, 0.5)];
-            plan.spheres(SphereSet { centers, radius: 0.05 }, &places);
+            plan.spheres(SphereSet { spheres: spheres.clone(), uv: false }, &places);
+            plan.spheres(SphereSet { spheres, uv: true }, &[place(DMat4::from_scale(DVec3::splat(0.7)))]);
             plan.analytic(Arc::new(Torus { tube: 0.25, ring: 1.0 }), &[at(&mut random, 0.4), at(&mut random, 0.6)]);
             plan.analytic(Arc::new(Cylinder), &[at(&mut random, 0.3)]);
             plan.analytic(Arc::new(Banchoff), &[at(&mut random, 0.4)]);

@@ -147,7 +147,7 @@ impl<'a> Sender<'a> {
                 // Sunflow: what is left of the choice is for the direction.
                 Keep::All => light.emit([x, y], [u, v], true),
             };
-            samples.set(i, ray, key, 1.0);
+            samples.set(i, ray, key);
         }
         samples
     }

@@ -134,7 +134,7 @@ impl Points {
             path,
             direction: batch.rays.direction.get(member),
             key: SampleKey { pixel, index: path.index },
-            share: batch.of,
+            share: batch.of.isqrt(),
             hit: batch.hits.get(member),
             surface: self.surfaces.get(i),
             inside: self.inside[i],

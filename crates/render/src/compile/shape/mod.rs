@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use jaspe_scene::description::{ByteOrder, Geometry, Name, PointSource};
 use jaspe_scene::{Diagnostic, Diagnostics, Loader, Scene};
 
-use crate::geometry::analytic::{self, Analytic};
+use crate::geometry::analytic::{self, Analytic, Flake};
 use crate::geometry::{MeshShape, PerVertex, Placement, Plan, SphereSet};
 use crate::math;
 use crate::mesh_file;
@@ -34,7 +34,9 @@ impl Sources<'_> {
         places: &[Placement],
         diagnostics: &mut Diagnostics,
     ) -> bool {
-        if let Some(shape) = analytic(geometry) {
+        if let Some(set) = flake(geometry).and_then(Flake::spheres) {
+            plan.spheres(set, places);
+        } else if let Some(shape) = analytic(geometry) {
             plan.analytic(shape, places);
         } else if let Geometry::Particles { points, count, radius } = geometry {
             match self.particles(points, *count, *radius) {
@@ -96,7 +98,7 @@ impl Sources<'_> {
             }
         };
         // What is not finite is in no place; the tree leaves it out.
-        Ok(SphereSet { centers, radius })
+        Ok(SphereSet { spheres: centers.into_iter().map(|center| center.extend(radius)).collect(), uv: false })
     }
 
     /// Looks for a file on the include path, then where the program runs.
@@ -115,17 +117,20 @@ impl Sources<'_> {
     }
 }
 
+/// Spheres on spheres.
+fn flake(geometry: &Geometry) -> Option<Flake> {
+    let Geometry::SphereFlake { level, axis, radius } = geometry else { return None };
+    let axis = Vec3::from(*axis).as_dvec3().normalize_or(DVec3::Z);
+    Some(Flake { level: *level, axis, radius: f64::from(*radius) })
+}
+
 /// The shapes that are met by a formula.
 fn analytic(geometry: &Geometry) -> Option<Arc<dyn Analytic>> {
     Some(match geometry {
         Geometry::Torus { tube, ring } => Arc::new(analytic::Torus { tube: f64::from(*tube), ring: f64::from(*ring) }),
         Geometry::Cylinder => Arc::new(analytic::Cylinder),
         Geometry::Banchoff => Arc::new(analytic::Banchoff),
-        Geometry::SphereFlake { level, axis, radius } => Arc::new(analytic::Flake {
-            level: *level,
-            axis: Vec3::from(*axis).as_dvec3().normalize_or(DVec3::Z),
-            radius: f64::from(*radius),
-        }),
+        Geometry::SphereFlake { .. } => Arc::new(flake(geometry)?),
         Geometry::Julia { c, iterations, epsilon } => Arc::new(analytic::Julia {
             c: c.map(f64::from).into(),
             iterations: *iterations,

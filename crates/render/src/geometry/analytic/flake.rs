@@ -1,9 +1,10 @@
-//! Spheres on spheres (format reference, §3.13), which are found on the way and never stored: the seventh level alone has five
-//! million.
+//! Spheres on spheres (format reference, §3.13). Up to level 7, which has five million, they are stored like any others, which is
+//! the fastest; deeper ones are found on the way, and need no memory.
 
 use glam::{DVec3, Vec2, Vec3};
 
 use super::{Analytic, LocalRay, Meeting};
+use crate::geometry::SphereSet;
 use crate::geometry::bvh::Aabb;
 use crate::geometry::surface::sphere_uv;
 
@@ -116,7 +117,24 @@ impl Branch {
     }
 }
 
+/// The deepest level whose spheres are stored.
+const STORED: u32 = 7;
+
 impl Flake {
+    /// All the spheres, unless there are too many: each level's after those of the one below.
+    pub fn spheres(self) -> Option<SphereSet> {
+        if self.level > STORED {
+            return None;
+        }
+        let (mut spheres, mut branches) = (Vec::new(), vec![self.root()]);
+        while !branches.is_empty() {
+            spheres.extend(branches.iter().map(|branch| branch.center.as_vec3().extend(branch.radius as f32)));
+            let grow = |branch: &Branch| (branch.level > 0).then(|| branch.children()).into_iter().flatten();
+            branches = branches.iter().flat_map(grow).collect();
+        }
+        Some(SphereSet { spheres, uv: true })
+    }
+
     fn root(&self) -> Branch {
         Branch { center: DVec3::ZERO, radius: self.radius, direction: self.axis, level: self.level }
     }
@@ -223,6 +241,19 @@ mod tests {
             }
         }
         assert!(met > 500, "{met}");
+    }
+
+    #[test]
+    fn the_stored_spheres_are_the_same() {
+        let set = FLAKE.spheres().expect("so few");
+        let mut all = Vec::new();
+        spheres(FLAKE.root(), &mut all);
+        assert_eq!(set.spheres.len(), all.len());
+        for (center, radius) in all {
+            let wanted = center.as_vec3().extend(radius as f32);
+            assert!(set.spheres.contains(&wanted), "{wanted}");
+        }
+        assert!(Flake { level: 8, ..FLAKE }.spheres().is_none());
     }
 
     #[test]
