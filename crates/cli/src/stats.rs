@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use jaspe_render::Stats;
+use jaspe_render::{Spent, Stats};
 use serde::Serialize;
 
 use crate::show::duration;
@@ -16,6 +16,15 @@ pub struct Report {
     pub build_s: f64,
     /// Rendering.
     pub render_s: f64,
+    /// Finding what rays meet, the mean of the threads; together with the next two about `render_s`, less what threads
+    /// waited.
+    pub trace_s: f64,
+    /// Evaluating textures.
+    pub texture_s: f64,
+    /// Surfaces, shaders and lights.
+    pub shade_s: f64,
+    /// Encoding and writing the picture.
+    pub write_s: f64,
     /// From the start of the command to the file on disk.
     pub total_s: f64,
     /// Of the picture, in pixels.
@@ -74,15 +83,41 @@ pub struct Times {
     pub build: Duration,
     /// Rendering.
     pub render: Duration,
+    /// What the threads did meanwhile, one thread's mean share of it.
+    pub spent: Spent,
     /// Encoding and writing the picture.
     pub write: Duration,
+    /// From the start of the command to the file on disk.
+    pub total: Duration,
 }
 
 impl Times {
-    /// One line for people.
+    /// What all threads spent together, as the mean of one.
+    pub fn mean(stats: &Stats) -> Spent {
+        let Spent { trace, texture, shade } = stats.spent;
+        let [trace, texture, shade] = [trace, texture, shade].map(|time| time / stats.threads.max(1) as u32);
+        Spent { trace, texture, shade }
+    }
+
+    /// One line for people: seconds, and shares of the total. What no stage accounts for is the rest: threads that had
+    /// nothing to do, and whatever is done between tiles.
     pub fn line(&self) -> String {
-        let [parse, build, render, write] = [self.parse, self.build, self.render, self.write].map(duration);
-        format!("parse {parse}, build {build}, render {render}, write {write}")
+        let Spent { trace, texture, shade } = self.spent;
+        let stages = [
+            ("parse", self.parse),
+            ("build", self.build),
+            ("trace", trace),
+            ("texture", texture),
+            ("shade", shade),
+            ("write", self.write),
+        ];
+        let rest = self.total.saturating_sub(stages.iter().map(|&(_, time)| time).sum());
+        let show = |(name, time): &(&str, Duration)| {
+            let share = 100.0 * time.as_secs_f64() / self.total.as_secs_f64().max(f64::MIN_POSITIVE);
+            format!("{name} {} ({share:.0} %)", duration(*time))
+        };
+        let words: Vec<String> = stages.iter().chain(&[("rest", rest)]).map(show).collect();
+        words.join(", ")
     }
 }
 

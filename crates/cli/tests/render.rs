@@ -32,9 +32,13 @@ fn statistics_are_one_object_on_standard_output() {
     write_scene(here.path(), "a.sc", SCENE);
     let run = run_in(here.path(), &["render", "a.sc", "--stats", "json", "--threads", "2", "--time", "--samples", "4"]);
     let stats: Value = serde_json::from_str(&run.stdout).expect("it is JSON");
-    for key in ["parse_s", "build_s", "render_s", "total_s"] {
-        assert!(stats[key].as_f64().is_some_and(|seconds| seconds >= 0.0), "{key} in {stats}");
+    let seconds = |key: &str| stats[key].as_f64().unwrap_or_else(|| panic!("no {key} in {stats}"));
+    for key in ["parse_s", "build_s", "render_s", "trace_s", "texture_s", "shade_s", "write_s"] {
+        assert!((0.0..=seconds("total_s")).contains(&seconds(key)), "{key} in {stats}");
     }
+    // Threads wait at the end of so small a picture; they cannot work longer than it takes.
+    let busy: f64 = ["trace_s", "texture_s", "shade_s"].map(seconds).iter().sum();
+    assert!(busy > 0.1 * seconds("render_s") && busy <= seconds("render_s"), "{busy} in {stats}");
     assert_eq!((&stats["width"], &stats["height"], &stats["threads"]), (&64.into(), &48.into(), &2.into()));
     assert_eq!(stats["samples"], 64 * 48 * 4);
     assert_eq!(stats["rays"]["camera"], 64 * 48 * 4);
@@ -45,7 +49,12 @@ fn statistics_are_one_object_on_standard_output() {
     assert!(["scalar", "sse", "avx2", "avx512", "neon"].contains(&stats["simd"].as_str().expect("a word")));
     assert_eq!(stats["warnings"], 0);
     assert!(stats.get("peak_rss_bytes").is_some());
-    assert!(run.stderr.contains("parse ") && run.stderr.contains("render "), "{}", run.stderr);
+    let line = run.stderr.lines().find(|line| line.starts_with("parse ")).expect("a line of times");
+    let stages: Vec<&str> = line.split(", ").filter_map(|stage| stage.split(' ').next()).collect();
+    assert_eq!(stages, ["parse", "build", "trace", "texture", "shade", "write", "rest"], "{line}");
+    let shares = line.split('(').skip(1).map(|rest| rest.split(' ').next().and_then(|share| share.parse::<i32>().ok()));
+    let total: i32 = shares.map(|share| share.expect("a share")).sum();
+    assert!((96..=104).contains(&total), "rounded shares add up to {total} in {line}");
 }
 
 #[test]

@@ -35,6 +35,7 @@
 
 mod affine;
 mod camera;
+mod clock;
 mod compile;
 mod develop;
 mod encode;
@@ -56,6 +57,7 @@ mod sunflow;
 mod tile;
 mod wave;
 
+pub use clock::Spent;
 pub use compile::{Compilation, CompiledScene, compile};
 pub use develop::{Alpha, Depth, Image, Samples, develop};
 pub use encode::{EncodeError, Format, UnknownFormat, encode};

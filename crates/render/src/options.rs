@@ -2,6 +2,8 @@
 
 use jaspe_scene::Dialect;
 
+use crate::clock::Spent;
+
 /// Choices that are made when a scene is compiled.
 #[derive(Debug, Clone, Default)]
 pub struct CompileOptions {
@@ -90,10 +92,12 @@ pub struct Stats {
     pub texture_points: u64,
     /// Threads that worked.
     pub threads: usize,
+    /// Where their time went.
+    pub spent: Spent,
 }
 
 impl Stats {
-    /// The counts of two parts of a rendering together; the threads are those of the larger.
+    /// The counts and times of two parts of a rendering together; the threads are those of the larger.
     #[must_use]
     pub fn plus(self, other: Stats) -> Stats {
         Stats {
@@ -105,6 +109,7 @@ impl Stats {
             gather_rays: self.gather_rays + other.gather_rays,
             texture_points: self.texture_points + other.texture_points,
             threads: self.threads.max(other.threads),
+            spent: self.spent.plus(other.spent),
         }
     }
 }

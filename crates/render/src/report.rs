@@ -7,6 +7,7 @@ mod shade;
 use glam::{Vec2, Vec3};
 use jaspe_texture::Space;
 
+use crate::clock::Stage;
 use crate::geometry::{Geometry, Hit, Hits, Id, PlaneShape, Ray, Rays, Shape, simd};
 use crate::material::Albedo;
 use crate::math;
@@ -71,7 +72,9 @@ impl Rules for Report {
 
     fn shade(&self, batch: &Batch<'_>, room: &mut Room, queues: &mut Queues<Gathered>) {
         room.locate(self, batch);
+        queues.clock.lap(Stage::Shade);
         self.albedos(batch, room);
+        queues.clock.lap(Stage::Texture);
         if let Albedo::Procedural(_) = batch.material.albedo {
             queues.stats.texture_points += batch.members.len() as u64;
         }

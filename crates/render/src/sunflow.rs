@@ -11,11 +11,12 @@ mod point;
 mod specular;
 mod virtual_lights;
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::Vec3;
 use jaspe_texture::Space;
 
+use crate::clock::{Clock, Spent, Stage};
 use crate::environment::Environment;
 use crate::geometry::{Geometry, Hits, Rays, Rows, Scratch, Surface};
 use crate::light::Light;
@@ -85,7 +86,7 @@ impl Rules for Sunflow {
     }
 
     fn shade(&self, batch: &Batch<'_>, room: &mut Room, queues: &mut Queues<Vec3>) {
-        room.prepare(batch);
+        room.prepare(batch, &mut queues.clock);
         if let Albedo::Procedural(_) = batch.material.albedo {
             queues.stats.texture_points += batch.members.len() as u64;
         }
@@ -137,9 +138,10 @@ impl Rules for Sunflow {
 
 impl Room {
     /// Works out the points of a batch and their colours.
-    fn prepare(&mut self, batch: &Batch<'_>) {
+    fn prepare(&mut self, batch: &Batch<'_>, clock: &mut Clock) {
         let Room { points, texture_points, colors, gloss, .. } = self;
-        points.locate(batch);
+        points.locate(batch, clock);
+        clock.lap(Stage::Shade);
         paint(&batch.material.albedo, batch, points, texture_points, colors);
         let specular = match &batch.material.response {
             Response::Matte(Coat::Phong { specular, .. } | Coat::Ward { specular, .. } | Coat::Mirror { specular }) => {
@@ -158,6 +160,7 @@ impl Room {
             }
             Gloss::Painted(albedo) => paint(albedo, batch, points, texture_points, gloss),
         }
+        clock.lap(Stage::Texture);
     }
 
     /// Traces the shadow rays if there are many.
@@ -295,17 +298,18 @@ impl Sunflow {
     }
 
     /// Sends the photons that the scene asks for, and keeps what comes of them; in vain where the observer has enough.
-    pub fn prepare(&self, world: &World, observer: &dyn Observer) -> Sunflow {
+    /// Returns what that cost, too.
+    pub fn prepare(&self, world: &World, observer: &dyn Observer) -> (Sunflow, Spent) {
         let mut ready = self.clone();
+        let senders = Senders { rules: self, world, observer, spent: Mutex::default() };
         if let Some(Caustics::Wanted { emit, gather, radius }) = self.caustics {
-            ready.caustics = CausticMap::send(&Senders { rules: self, world, observer }, emit, gather, radius)
-                .map(|map| Caustics::Map(Arc::new(map)));
+            ready.caustics = CausticMap::send(&senders, emit, gather, radius).map(|map| Caustics::Map(Arc::new(map)));
         }
         if let Indirect::Instant { samples, sets, bias } = self.indirect {
-            let lights = VirtualLights::send(&Senders { rules: self, world, observer }, samples, sets, bias);
+            let lights = VirtualLights::send(&senders, samples, sets, bias);
             ready.indirect = Indirect::VirtualLights(Arc::new(lights));
         }
-        ready
+        (ready, senders.spent.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Queues a secondary ray, unless it would bring nothing.

@@ -11,6 +11,7 @@ use std::sync::{Mutex, PoisonError};
 use glam::Vec3;
 use rayon::prelude::*;
 
+use crate::clock::Spent;
 use crate::compile::{CompiledScene, Meaning, Sampling};
 use crate::film::{Encoding, Film, Pixel};
 use crate::options::{Cancelled, Observer, RenderOptions, Stats};
@@ -168,10 +169,12 @@ pub(crate) fn render(
 ) -> Result<(Film, Stats), Cancelled> {
     match &scene.meaning {
         Meaning::Sunflow { rules, .. } => in_pool(options, || {
-            let rules = rules.prepare(&scene.world, observer);
-            Job::new(scene, &rules, options, observer).passes()
+            let (rules, spent) = rules.prepare(&scene.world, observer);
+            Job::new(scene, &rules, options, observer).passes(spent)
         }),
-        Meaning::Report { rules, .. } => in_pool(options, || Job::new(scene, rules, options, observer).passes()),
+        Meaning::Report { rules, .. } => {
+            in_pool(options, || Job::new(scene, rules, options, observer).passes(Spent::default()))
+        }
     }
 }
 
@@ -217,8 +220,9 @@ impl<'a, R: Rules> Job<'a, R> {
         Job { scene, rules, options, observer, crop, frame, region, done, total }
     }
 
-    fn passes(&self) -> Result<(Film, Stats), Cancelled> {
-        let mut stats = Stats { threads: rayon::current_num_threads(), ..Stats::default() };
+    /// All samples of the picture; `spent` has gone into preparations.
+    fn passes(&self, spent: Spent) -> Result<(Film, Stats), Cancelled> {
+        let mut stats = Stats { threads: rayon::current_num_threads(), spent, ..Stats::default() };
         let once = |end: u32| Pass { first: 0, end, restart: false };
         let film = match self.scene.sampling {
             Sampling::Fixed { count } => self.single_pass(once(count), &mut stats)?,
@@ -307,7 +311,7 @@ impl<'a, R: Rules> Job<'a, R> {
 
     /// Adds the samples of a pass to the active pixels of a tile, a wave at a time.
     fn work(&self, tile: &mut Tile, pass: Pass, room: &mut Room<R>) -> Stats {
-        room.workspace.queues.stats = Stats::default();
+        room.workspace.begin();
         tile.sums.resize(tile.rect.pixels() as usize, Sum::default());
         let active = match std::mem::replace(&mut tile.active, Active::Some(Vec::new())) {
             Active::All => (0..tile.sums.len() as u32).collect(),
@@ -329,12 +333,12 @@ impl<'a, R: Rules> Job<'a, R> {
             room.pixels.extend(slots.iter().map(|&slot| tile.position(slot)));
             for first in (pass.first..pass.end).step_by(each) {
                 if self.observer.cancelled() {
-                    return room.workspace.queues.stats;
+                    return room.workspace.end();
                 }
                 self.wave(tile, slots, first..pass.end.min(first + each as u32), pass, room);
             }
         }
-        room.workspace.queues.stats
+        room.workspace.end()
     }
 
     /// Traces the samples `indices` of some pixels.

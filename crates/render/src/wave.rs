@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use glam::Vec3;
 
+use crate::clock::{Clock, Stage};
 use crate::geometry::{Geometry, Hit, Hits, Id, Ray, Rays, Scratch};
 use crate::material::Material;
 use crate::options::Stats;
@@ -159,6 +160,8 @@ pub(crate) struct Queues<N> {
     pub next: Paths,
     pub nodes: Vec<N>,
     pub stats: Stats,
+    /// Whoever goes on to another stage ends the lap of the last one.
+    pub clock: Clock,
 }
 
 /// What rays meet.
@@ -259,13 +262,30 @@ impl<R: Rules> Default for Workspace<R> {
             misses: Vec::new(),
             room: R::Room::default(),
             scratch: Scratch::default(),
-            queues: Queues { next: Paths::default(), nodes: Vec::new(), stats: Stats::default() },
+            queues: Queues {
+                next: Paths::default(),
+                nodes: Vec::new(),
+                stats: Stats::default(),
+                clock: Clock::start(),
+            },
             results: Results::default(),
         }
     }
 }
 
 impl<R: Rules> Workspace<R> {
+    /// Begins to count and to time anew.
+    pub fn begin(&mut self) {
+        (self.queues.stats, self.queues.clock) = (Stats::default(), Clock::start());
+    }
+
+    /// What was done since the beginning.
+    pub fn end(&mut self) -> Stats {
+        let Queues { clock, stats, .. } = &mut self.queues;
+        clock.lap(Stage::Shade);
+        Stats { spent: clock.spent, ..*stats }
+    }
+
     /// Traces camera samples to their end; `results` gets one entry each, in order. What is seen is noted only if the
     /// caller `looks`.
     pub fn trace(&mut self, world: &World, rules: &R, samples: &mut Samples, looks: bool) {
@@ -275,7 +295,9 @@ impl<R: Rules> Workspace<R> {
             std::mem::swap(&mut self.current, &mut self.queues.next);
             self.queues.next.clear();
             self.count_rays();
+            self.queues.clock.lap(Stage::Shade);
             world.geometry.closest(self.current.rays.view(R::T_MIN), &mut self.hits, &mut self.scratch);
+            self.queues.clock.lap(Stage::Trace);
             self.sort_by_material(world);
             if first && looks {
                 self.look(world, rules);
@@ -294,7 +316,7 @@ impl<R: Rules> Workspace<R> {
     /// Queues the camera rays.
     fn start(&mut self, samples: &mut Samples) {
         let count = samples.keys.len();
-        let Workspace { queues: Queues { next, nodes, stats }, results, .. } = self;
+        let Workspace { queues: Queues { next, nodes, stats, .. }, results, .. } = self;
         next.clear();
         std::mem::swap(&mut next.rays, &mut samples.rays);
         let path = Path { weight: Vec3::ONE, node: 0, index: 0, kind: RayKind::Camera, depth: Depth::default() };

@@ -2,7 +2,7 @@
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use jaspe_render::{CompileOptions, CompiledScene, Film, RenderOptions, Stats, render};
@@ -78,7 +78,7 @@ pub struct Render {
     #[arg(long, value_name = "NAME.KEY=VALUE")]
     set: Vec<String>,
 
-    /// Print how long each stage took
+    /// Print where the time went: parse, build, trace, texture, shade, write, and their shares
     #[arg(long)]
     time: bool,
 
@@ -139,9 +139,14 @@ impl Render {
         let render_time = rendering.elapsed();
         let writing = Instant::now();
         let byte_count = output.write(&film)?;
-        let times =
-            Times { parse: loaded.parse_time, build: loaded.build_time, render: render_time, write: writing.elapsed() };
-        let total = started.elapsed();
+        let times = Times {
+            parse: loaded.parse_time,
+            build: loaded.build_time,
+            render: render_time,
+            spent: Times::mean(&stats),
+            write: writing.elapsed(),
+            total: started.elapsed(),
+        };
 
         if self.show {
             terminal::show(&film);
@@ -151,12 +156,12 @@ impl Render {
         }
         if !self.quiet {
             let size = file_size(byte_count);
-            let (path, total) = (output.path().display(), duration(total));
+            let (path, total) = (output.path().display(), duration(times.total));
             eprintln!("{path}: {}x{}, {size}, in {total}", film.width, film.height);
         }
         if self.stats.is_some() {
             let warnings = loaded.diagnostics.count(Severity::Warning);
-            let report = self.report(&film, &stats, &times, total, warnings);
+            let report = self.report(&film, &stats, &times, warnings);
             writeln!(std::io::stdout(), "{}", json_text(&report))?;
         }
         Ok(Outcome::Done)
@@ -201,12 +206,16 @@ impl Render {
         })
     }
 
-    fn report(&self, film: &Film, stats: &Stats, times: &Times, total: Duration, warnings: usize) -> Report {
+    fn report(&self, film: &Film, stats: &Stats, times: &Times, warnings: usize) -> Report {
         Report {
             parse_s: times.parse.as_secs_f64(),
             build_s: times.build.as_secs_f64(),
             render_s: times.render.as_secs_f64(),
-            total_s: total.as_secs_f64(),
+            trace_s: times.spent.trace.as_secs_f64(),
+            texture_s: times.spent.texture.as_secs_f64(),
+            shade_s: times.spent.shade.as_secs_f64(),
+            write_s: times.write.as_secs_f64(),
+            total_s: times.total.as_secs_f64(),
             width: film.width,
             height: film.height,
             samples: stats.samples,

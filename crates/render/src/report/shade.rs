@@ -4,6 +4,7 @@
 use glam::Vec3;
 
 use super::{Gathered, MAX_BOUNCES, Report, ReportLight, T_MIN, UNLIT};
+use crate::clock::Stage;
 use crate::geometry::simd::{self, Simd};
 use crate::geometry::{Geometry, Hit, Ids, Ray, RayView, Rows, Scratch, Shape};
 use crate::material::{Coat, Gloss, Material, Response};
@@ -163,7 +164,9 @@ impl Report {
             let rays =
                 RayView { origin: position, direction: &sight.direction, t_max: &sight.t_max, skip: ids, t_min: T_MIN };
             queues.stats.shadow_rays += sight.t_max.iter().filter(|&&t_max| t_max >= 0.0).count() as u64;
+            queues.clock.lap(Stage::Shade);
             batch.geometry.occluded(rays, blocked, scratch);
+            queues.clock.lap(Stage::Trace);
             simd::run(Gather { light: &sight.light, blocked, direct });
         }
         let gain = Share::of(material).gain;

@@ -7,6 +7,7 @@ use glam::Vec3;
 use super::coat::Bsdf;
 use super::point::{Point, Which};
 use super::{Queues, Room, Sunflow};
+use crate::clock::Stage;
 use crate::geometry::{Geometry, Ray, Rays, Scratch};
 use crate::light::{Arrival, Light, Receiver};
 
@@ -37,7 +38,9 @@ impl Shadows {
     /// Traces what is queued and hands out what arrives.
     pub fn trace(&mut self, geometry: &Geometry, queues: &mut Queues<Vec3>, scratch: &mut Scratch) {
         queues.stats.shadow_rays += self.nodes.len() as u64;
+        queues.clock.lap(Stage::Shade);
         geometry.occluded(self.rays.view(0.0), &mut self.blocked, scratch);
+        queues.clock.lap(Stage::Trace);
         for ((&light, &node), &blocked) in self.light.iter().zip(&self.nodes).zip(&self.blocked) {
             if !blocked {
                 queues.nodes[node as usize] += light;

@@ -3,12 +3,15 @@
 //!
 //! Photons travel in the same waves as the light that the camera sees, by rules of their own.
 
+use std::sync::{Mutex, PoisonError};
+
 use glam::Vec3;
 use rayon::prelude::*;
 
 use super::halton::halton;
 use super::point::Point;
 use super::{Batch, Coat, Path, Queues, Response, Room, Rules, Sunflow};
+use crate::clock::Spent;
 use crate::geometry::{Geometry, Hits, Rays};
 use crate::light::Light;
 use crate::material::luminance;
@@ -47,12 +50,14 @@ pub(crate) struct Senders<'a> {
     pub rules: &'a Sunflow,
     pub world: &'a World,
     pub observer: &'a dyn Observer,
+    /// What the threads spent on it.
+    pub spent: Mutex<Spent>,
 }
 
 /// Sends `count` photons of the lights, numbered from `first` on, and returns those that are kept. The same photons for
 /// any number of threads; fewer if the observer cancels.
 pub(crate) fn send(senders: &Senders<'_>, keep: Keep, first: u32, count: u32) -> Vec<Photon> {
-    let Senders { rules, world, observer } = *senders;
+    let Senders { rules, world, observer, ref spent } = *senders;
     let sender = Sender::new(rules, keep, count);
     if sender.total <= 0.0 {
         return Vec::new();
@@ -64,12 +69,16 @@ pub(crate) fn send(senders: &Senders<'_>, keep: Keep, first: u32, count: u32) ->
             if observer.cancelled() {
                 return Vec::new();
             }
+            workspace.begin();
             let mut samples = sender.emit(first + start..first + count.min(start + CHUNK));
             workspace.trace(world, &sender, &mut samples, false);
             let mut kept = std::mem::take(&mut workspace.room.kept);
             if keep == Keep::All {
                 share_last(&mut kept, first + start);
             }
+            let chunk = workspace.end().spent;
+            let mut spent = spent.lock().unwrap_or_else(PoisonError::into_inner);
+            *spent = spent.plus(chunk);
             kept
         })
         .collect();
@@ -259,7 +268,7 @@ impl Rules for Sender<'_> {
     const T_MIN: f32 = 0.0;
 
     fn shade(&self, batch: &Batch<'_>, room: &mut PhotonRoom, queues: &mut Queues<()>) {
-        room.shading.prepare(batch);
+        room.shading.prepare(batch, &mut queues.clock);
         for i in 0..batch.members.len() {
             let point = room.shading.point(batch, i);
             self.meet(batch, &point, &mut room.kept, queues);

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use crate::clock::{Clock, Stage};
 use crate::geometry::{Hit, Id, Ids, Ray, Rows, Surface, Surfaces};
 use crate::math::{self, offset};
 use crate::modifier::Place;
@@ -91,8 +92,8 @@ pub(super) enum Which {
 }
 
 impl Points {
-    /// Surfaces of a batch, turned towards the rays.
-    pub fn locate(&mut self, batch: &Batch<'_>) {
+    /// Surfaces of a batch, turned towards the rays. Their bumps are timed as textures.
+    pub fn locate(&mut self, batch: &Batch<'_>, clock: &mut Clock) {
         let count = batch.members.len();
         batch.geometry.surfaces(batch.members, batch.rays, batch.hits, &mut self.surfaces);
         self.front.resize(count);
@@ -100,6 +101,7 @@ impl Points {
         self.inside.resize(count, false);
         self.skip.resize(count);
         if let Some(modifier) = &batch.material.modifier {
+            clock.lap(Stage::Shade);
             for i in 0..count {
                 let (hit, Surface { point, normal, .. }) = (batch.hit(i), self.surfaces.get(i));
                 let [u, v, _] = math::frame(normal, batch.geometry.tangent(&hit, point));
@@ -108,6 +110,7 @@ impl Points {
                 let place = Place { point, normal, tangent: [u, v], uv, object_from_world };
                 self.surfaces.normal.set(i, modifier.normal(&place));
             }
+            clock.lap(Stage::Texture);
         }
         for (i, &member) in batch.members.iter().enumerate() {
             let direction = batch.rays.direction.get(member as usize);
