@@ -2,6 +2,7 @@
 
 use std::process::Stdio;
 
+use crate::python::{self, Trouble};
 use crate::{cargo, run};
 
 /// A check that runs before the tests.
@@ -29,6 +30,9 @@ const CHECKS: &[Check] = &[
     },
 ];
 
+/// The tests. Those of the Python package are Python's.
+const TESTS: &[&str] = &["test", "--workspace", "--exclude", "jaspe-python", "--profile", "checked"];
+
 /// Runs every check, and the tests last, so that their results end the output. What failed is named at the end.
 pub fn run_all() -> Result<(), String> {
     let mut failed = Vec::new();
@@ -44,11 +48,28 @@ pub fn run_all() -> Result<(), String> {
             failed.push(check.name);
         }
     }
+    println!("== python");
+    match python::check() {
+        Ok(()) => {}
+        Err(Trouble::Skipped(reason)) => println!("== python: skipped, {reason}"),
+        Err(Trouble::Failed(parts)) => {
+            println!("== python: failed: {}", parts.join(", "));
+            failed.push("python");
+        }
+    }
     println!("== tests");
-    if run(&mut cargo(&["test", "--workspace", "--profile", "checked"])).is_err() {
+    if run(&mut cargo(TESTS)).is_err() {
         failed.push("tests");
     }
     if failed.is_empty() { Ok(()) } else { Err(format!("failed: {}", failed.join(", "))) }
+}
+
+/// Checks the Python package alone.
+pub fn run_python() -> Result<(), String> {
+    python::check().map_err(|trouble| match trouble {
+        Trouble::Skipped(reason) => reason,
+        Trouble::Failed(parts) => format!("failed: {}", parts.join(", ")),
+    })
 }
 
 fn is_installed(subcommand: &str) -> bool {

@@ -2,6 +2,7 @@
 
 mod ci;
 mod pictures;
+mod python;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -9,7 +10,8 @@ use std::process::{Command, ExitCode};
 const HELP: &str = "\
 Usage: cargo xtask COMMAND
 
-  ci               format, lints, documentation and tests, as continuous integration runs them
+  ci               format, lints, documentation, Python package and tests, as continuous integration runs them
+  python           the Python package alone: build, tests, types, stubs and documentation
   bless [FILTER]   render the references of tests/scenes anew (those whose path contains FILTER)
   gallery          render scenes/*.sc as small pictures for the documentation
 ";
@@ -19,6 +21,7 @@ fn main() -> ExitCode {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let result = match arguments[..] {
         ["ci"] => ci::run_all(),
+        ["python"] => ci::run_python(),
         ["bless"] => pictures::bless(""),
         ["bless", filter] => pictures::bless(filter),
         ["gallery"] => pictures::gallery(),
@@ -41,6 +44,11 @@ fn main() -> ExitCode {
 fn root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.parent().expect("this package is a folder of the repository").to_owned()
+}
+
+/// Where cargo builds.
+fn target() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
 /// The cargo that runs us, in the root.

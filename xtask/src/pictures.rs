@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::{cargo, root, run};
+use crate::{cargo, root, run, target};
 
 /// Renders the references of all scenes whose path contains `filter`, and removes references without a scene.
 pub fn bless(filter: &str) -> Result<(), String> {
@@ -55,8 +55,7 @@ pub fn gallery() -> Result<(), String> {
 /// Builds the program as users have it, and says where it is.
 fn build() -> Result<PathBuf, String> {
     run(&mut cargo(&["build", "--release", "--package", "jaspe"]))?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-    Ok(target.join("release").join(format!("jaspe{}", std::env::consts::EXE_SUFFIX)))
+    Ok(target().join("release").join(format!("jaspe{}", std::env::consts::EXE_SUFFIX)))
 }
 
 /// Paths of all files below a folder with that extension, relative to it, sorted; none if there is no such folder.

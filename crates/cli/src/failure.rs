@@ -1,8 +1,9 @@
 //! Why a command could not do its work (exit status 2, or 130 after Ctrl-C).
 
-use std::fmt::Display;
 use std::io;
 use std::path::Path;
+
+use jaspe_edge::{Refusal, plain};
 
 /// What ended a command early.
 #[derive(Debug)]
@@ -45,10 +46,11 @@ impl Failure {
             _ => failure,
         }
     }
+}
 
-    /// `path` could not be written.
-    pub fn writing(path: &Path, error: impl Display) -> Self {
-        Failure::new(format!("cannot write `{}`: {error}", path.display()))
+impl From<Refusal> for Failure {
+    fn from(Refusal { message, hints }: Refusal) -> Self {
+        Failure::Message { message, hints }
     }
 }
 
@@ -59,20 +61,6 @@ impl From<io::Error> for Failure {
             io::ErrorKind::BrokenPipe => Failure::BrokenPipe,
             _ => Failure::new(format!("cannot write to standard output: {}", plain(&error))),
         }
-    }
-}
-
-/// The system's words without its error number.
-pub fn plain(error: &io::Error) -> String {
-    let text = error.to_string();
-    let text = text.split(" (os error").next().unwrap_or_default();
-    let mut characters = text.chars();
-    // Messages are lower case, but `I/O` stays what it is.
-    match (characters.next(), characters.next()) {
-        (Some(first), Some(second)) if second.is_lowercase() => {
-            format!("{}{}", first.to_lowercase(), &text[first.len_utf8()..])
-        }
-        _ => text.to_owned(),
     }
 }
 

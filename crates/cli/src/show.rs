@@ -32,11 +32,6 @@ pub fn size(bytes: usize) -> String {
     }
 }
 
-/// `1 error`, `2 errors`.
-pub fn count(number: usize, noun: &str) -> String {
-    if number == 1 { format!("1 {noun}") } else { format!("{number} {noun}s") }
-}
-
 /// A value as indented JSON, its fields in the order of their declaration.
 pub fn json_text(value: &impl serde::Serialize) -> String {
     serde_json::to_string_pretty(value).expect("plain data can be written as JSON")
@@ -63,7 +58,5 @@ mod tests {
         assert_eq!(size(517), "517 bytes");
         assert_eq!(size(21_349), "21.3 kB");
         assert_eq!(size(4_000_000), "4.0 MB");
-        assert_eq!(count(1, "error"), "1 error");
-        assert_eq!(count(0, "warning"), "0 warnings");
     }
 }

@@ -23,6 +23,8 @@ pub struct Declaration<T> {
     pub of: T,
     /// The word for it in scenes and on the command line.
     pub name: &'static str,
+    /// The word for it elsewhere in the field, which stands for it as well; often the same.
+    pub term: &'static str,
     /// What it looks like.
     pub sentence: &'static str,
     /// What it is, at the point p.
@@ -42,6 +44,7 @@ pub(crate) const BASES: &[Declaration<Basis>] = &[
     Declaration {
         of: Basis::Improved,
         name: "improved",
+        term: "perlin",
         sentence: "Gradient noise on cubes: smooth, without visible lattice, the default of the materials.",
         formula: "Σ over the 2ᴰ corners of w(x) w(y) w(z) · g·(p − corner), with w from 6t⁵ − 15t⁴ + 10t³ and twelve gradients g",
         source: "K. Perlin, “Improving Noise”, SIGGRAPH 2002, and the listing published with it; in four dimensions his `ImprovedNoise4D`",
@@ -55,6 +58,7 @@ pub(crate) const BASES: &[Declaration<Basis>] = &[
     Declaration {
         of: Basis::Classic,
         name: "classic",
+        term: "classic",
         sentence: "Gradient noise on cubes with random unit gradients: the original, softer and with a trace of the lattice.",
         formula: "Σ over the 2ᴰ corners of w(x) w(y) w(z) · g·(p − corner), with w from 3t² − 2t³ and 256 random gradients g",
         source: "K. Perlin, “An Image Synthesizer”, SIGGRAPH 1985",
@@ -68,6 +72,7 @@ pub(crate) const BASES: &[Declaration<Basis>] = &[
     Declaration {
         of: Basis::Lattice,
         name: "lattice",
+        term: "lattice",
         sentence: "Values of a table at the lattice points, interpolated: blotches.",
         formula: "Σ over the 2ᴰ corners of w(x) w(y) w(z) · v(corner), with w from 3t² − 2t³ and v from a permutation",
         source: "the random noise of the 2010 report",
@@ -81,6 +86,7 @@ pub(crate) const BASES: &[Declaration<Basis>] = &[
     Declaration {
         of: Basis::Value,
         name: "value",
+        term: "value",
         sentence: "Random values at the lattice points, interpolated: blotches that never repeat.",
         formula: "Σ over the 2ᴰ corners of w(x) w(y) w(z) · v(corner), with w from 6t⁵ − 15t⁴ + 10t³ and v from a hash",
         source: "K. Perlin, “An Image Synthesizer”, SIGGRAPH 1985 (his first examples)",
@@ -94,6 +100,7 @@ pub(crate) const BASES: &[Declaration<Basis>] = &[
     Declaration {
         of: Basis::Simplex,
         name: "simplex",
+        term: "simplex",
         sentence: "Gradient noise on tetrahedra: rounder than that on cubes, and cheap in many dimensions.",
         formula: "Σ over the D + 1 corners of max(0, ½ − r²)⁴ · g·(p − corner), scaled",
         source: "K. Perlin, “Noise Hardware”, SIGGRAPH 2001; S. Gustavson, “Simplex Noise Demystified”, 2005",
@@ -107,6 +114,7 @@ pub(crate) const BASES: &[Declaration<Basis>] = &[
     Declaration {
         of: Basis::Cellular,
         name: "cellular",
+        term: "cellular",
         sentence: "Distances to random feature points, one in each cell: cells, scales, stones. F1, Euclidean, unless parameters say otherwise.",
         formula: "F1 = the distance to the nearest feature point, F2 = that to the second nearest, F2 − F1, or a random number of the nearest one",
         source: "S. Worley, “A Cellular Texture Basis Function”, SIGGRAPH 1996",
@@ -120,6 +128,7 @@ pub(crate) const BASES: &[Declaration<Basis>] = &[
     Declaration {
         of: Basis::White,
         name: "white",
+        term: "white",
         sentence: "A random number in each cell.",
         formula: "v(floor(p)), with v from a hash",
         source: "a random number per cell: as old as random numbers",
@@ -137,6 +146,7 @@ pub(crate) const SUMS: &[Declaration<Combine>] = &[
     Declaration {
         of: Combine::Plain,
         name: "plain",
+        term: "fbm",
         sentence: "The noise itself: fractional Brownian motion.",
         formula: "Σ gᵏ n(lᵏ p)",
         source: "K. Perlin, “An Image Synthesizer”, SIGGRAPH 1985",
@@ -150,6 +160,7 @@ pub(crate) const SUMS: &[Declaration<Combine>] = &[
     Declaration {
         of: Combine::Absolute,
         name: "absolute",
+        term: "turbulence",
         sentence: "Its absolute value: turbulence, with creases where the noise passes zero.",
         formula: "Σ gᵏ |n(lᵏ p)|",
         source: "K. Perlin, “An Image Synthesizer”, SIGGRAPH 1985",
@@ -163,6 +174,7 @@ pub(crate) const SUMS: &[Declaration<Combine>] = &[
     Declaration {
         of: Combine::Ridged,
         name: "ridged",
+        term: "ridged",
         sentence: "Sharp ridges where the noise passes zero, smooth slopes and rough ridges.",
         formula: "Σ gᵏ sₖ, with sₖ = wₖ (1 − |n(lᵏ p)|)², wₖ₊₁ = min(1, 2 sₖ)",
         source: "F. K. Musgrave in D. S. Ebert et al., “Texturing and Modeling: A Procedural Approach”",
@@ -176,6 +188,7 @@ pub(crate) const SUMS: &[Declaration<Combine>] = &[
     Declaration {
         of: Combine::Hybrid,
         name: "hybrid",
+        term: "hybrid",
         sentence: "Smooth valleys and rough heights.",
         formula: "Σ wₖ sₖ, with sₖ = gᵏ (n(lᵏ p) + 0.7), wₖ₊₁ = min(1, wₖ sₖ)",
         source: "F. K. Musgrave in D. S. Ebert et al., “Texturing and Modeling: A Procedural Approach”",
@@ -199,5 +212,12 @@ impl Combine {
     /// What this sum says of itself.
     pub fn declaration(self) -> &'static Declaration<Combine> {
         SUMS.iter().find(|declaration| declaration.of == self).expect("every sum is declared")
+    }
+}
+
+impl<T: Copy> Declaration<T> {
+    /// What is declared under this name or term.
+    pub(crate) fn find(list: &[Declaration<T>], name: &str) -> Option<T> {
+        list.iter().find(|declaration| declaration.name == name || declaration.term == name).map(|found| found.of)
     }
 }

@@ -88,6 +88,7 @@ mod grid;
 pub mod math;
 mod noise;
 mod number;
+mod recipe;
 mod seed;
 #[allow(unsafe_code, reason = "intrinsics, behind types that exist only on machines that have the instructions")]
 pub mod simd;
@@ -101,6 +102,7 @@ pub use declaration::{Declaration, Statistics};
 pub use grid::Grid;
 pub use noise::{Noise, PeriodError};
 pub use number::{Dual, Integer, Mask, Real};
+pub use recipe::{Recipe, RecipeError};
 pub use seed::permutation;
 pub use sum::{Combine, Sum};
 pub use table::{ByteTable, FloatTable, PairTable};

@@ -54,6 +54,7 @@ mod picture;
 mod report;
 mod sampler;
 mod sunflow;
+mod swatch;
 mod tile;
 mod wave;
 
@@ -65,6 +66,7 @@ pub use film::{Encoding, Film, Pixel};
 pub use jaspe_scene::{srgb_decode, srgb_encode};
 pub use options::{Cancelled, CompileOptions, Look, Observer, RenderOptions, Stats};
 pub use picture::{DecodeError, Picture, PicturePixels};
+pub use swatch::swatch;
 
 /// Renders a compiled scene.
 ///

@@ -30,6 +30,7 @@ pub mod description;
 mod diagnostic;
 mod lexer;
 mod number;
+mod parameters;
 mod parser;
 mod source;
 mod srgb;
@@ -38,6 +39,7 @@ mod writer;
 
 pub use description::{Dialect, Scene};
 pub use diagnostic::{Diagnostic, Diagnostics, Label, Severity};
+pub use parameters::{Parameter, parameters};
 pub use parser::{parse, read, set};
 pub use source::{DiskLoader, Loader, MemoryLoader, Position, Source, Sources, Span, Spanned};
 pub use srgb::{srgb_decode, srgb_encode};

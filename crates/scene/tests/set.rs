@@ -4,7 +4,7 @@ mod common;
 
 use common::clean;
 use jaspe_scene::description::{ColorOrTexture, ColorSpec, SettingValue, ShaderKind};
-use jaspe_scene::{Scene, set};
+use jaspe_scene::{Parameter, Scene, parameters, set};
 
 fn scene() -> Scene {
     clean(
@@ -124,4 +124,55 @@ fn textures_are_set_like_shaders() {
     assert_eq!(scene.textures[0].settings[0].value, SettingValue::Int(9));
     let refused = set(&mut scene, "vein.depth=9").expect_err("there is none of that name");
     assert_eq!(refused.iter().next().expect("a message").hints, ["did you mean `veins`?"]);
+}
+
+/// The value as it is written after `=`.
+fn text(value: &Parameter) -> String {
+    let numbers = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+    match value {
+        Parameter::Int(value) => value.to_string(),
+        Parameter::Float(value) => value.to_string(),
+        Parameter::Floats(values) => numbers(values),
+        Parameter::Color(color) => numbers(color),
+        Parameter::Word(word) => word.clone(),
+    }
+}
+
+#[test]
+fn parameters_are_read_as_they_are_set() {
+    let mut scene = clean(
+        "texture { name t type wood depth 3 }
+         shader { name floor type marble scale 2 diffuse_initial { \"sRGB nonlinear\" 1 0.5 0 } }
+         shader { name p type phong diff 1 1 1 spec 1 0.5 1 50 samples 3 }
+         shader { name g type glass eta 1.3 color 1 1 0.1 }
+         shader { name d type diffuse texture a.png }
+         shader { name m type mirror refl 1 1 1 }
+         shader { name c type constant 1 1 1 }
+         shader { name s type shiny diff 0.1 0.2 0.3 refl 0.5 }
+         shader { name w type ward diff 0.1 0.2 0.3 spec 1 1 1 rough 0.1 0.2 samples 2 }
+         shader { name a type amb-occ bright 1 1 1 dark 0 0 0 samples 8 dist 3 }
+         shader { name u type uber diff 1 1 1 diff.texture b.png diff.blend 0.25 refl 1 1 1 glossy 0.1 samples 2 }
+         shader { name l type wireframe line 1 0 0 fill 0 0 1 width 0.01 }
+         shader { name i type id }",
+    );
+    let names: Vec<String> = scene.shaders.iter().map(|shader| shader.name.value.clone()).collect();
+    let mut count = 0;
+    for name in names.iter().map(String::as_str).chain(["t"]) {
+        let before = parameters(&scene, name).expect("it is there");
+        for (key, value) in before.iter().filter(|(key, _)| *key != "space") {
+            set(&mut scene, &format!("{name}.{key}={}", text(value))).expect("it takes what it had");
+            count += 1;
+        }
+        assert_eq!(parameters(&scene, name), Some(before), "{name}");
+    }
+    assert_eq!(count, 7 + 7 + 3 + 4 + 1 + 1 + 1 + 2 + 4 + 4 + 7 + 3);
+    assert_eq!(parameters(&scene, "nobody"), None);
+    let floor = parameters(&scene, "floor").expect("it is there");
+    assert!(floor.contains(&("scale", Parameter::Float(2.0))) && floor.contains(&("depth", Parameter::Int(5))));
+    let glass = parameters(&scene, "g").expect("it is there");
+    assert_eq!(glass[..2], [("eta", Parameter::Float(1.3)), ("color", Parameter::Color([1.0, 1.0, 0.1]))]);
+    assert_eq!(
+        parameters(&scene, "p").expect("it is there")[1],
+        ("spec", Parameter::Floats(vec![1.0, 0.5, 1.0, 50.0]))
+    );
 }

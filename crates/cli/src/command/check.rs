@@ -4,6 +4,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
+use jaspe_edge::message;
 use jaspe_render::CompileOptions;
 use jaspe_scene::Severity;
 use serde_json::json;
@@ -49,7 +50,7 @@ impl Check {
         match self.format {
             OutputFormat::Text => {
                 let text = report::text(diagnostics, sources, Severity::Note);
-                let summary = report::summary(diagnostics);
+                let summary = message::summary(diagnostics);
                 writeln!(anstream::stdout(), "{text}{}: {summary}", self.scene.display())?;
             }
             OutputFormat::Json => {

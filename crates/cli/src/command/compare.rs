@@ -4,13 +4,13 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
+use jaspe_edge::file::Output;
 use serde_json::json;
 
 use crate::Outcome;
 use crate::arguments::OutputFormat;
 use crate::failure::Failure;
 use crate::measure::{Comparison, Shown, compare, heat};
-use crate::output::Output;
 use crate::report;
 use crate::show::{json_text, shortest};
 

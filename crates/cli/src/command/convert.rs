@@ -4,11 +4,11 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use jaspe_edge::file::Target;
 use jaspe_scene::{DiskLoader, Includes, Severity};
 
 use crate::Outcome;
 use crate::failure::Failure;
-use crate::output::Target;
 use crate::report;
 
 /// Write a scene anew: the same scene, tidy, in the order that Sunflow insists on.

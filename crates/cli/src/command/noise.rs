@@ -2,9 +2,9 @@
 
 use std::io::{self, BufRead, BufReader, BufWriter, Read as _, Write};
 
-use clap::builder::PossibleValuesParser;
-use clap::{Args, ValueEnum};
-use jaspe_noise::{Basis, Cellular, Combine, Feature, Field, Metric, Noise as Lattice, Sum, Warp};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use jaspe_noise::{Basis, Cellular, Combine, Feature, Field, Metric, Recipe};
 
 use crate::Outcome;
 use crate::arguments::period;
@@ -29,28 +29,28 @@ Examples:
   seq 0 0.1 10 | awk '{ print $1, 0, 0 }' | jaspe noise improved -")]
 pub struct Noise {
     /// The noise
-    #[arg(value_name = "BASIS", value_parser = PossibleValuesParser::new(Basis::ALL.iter().map(|basis| basis.name())))]
-    basis: String,
+    #[arg(value_name = "BASIS", value_parser = bases())]
+    basis: Basis,
 
     /// The point, or `-` to read points from standard input
     #[arg(value_name = "X [Y [Z [W]]]", required = true, num_args = 1..=4, allow_negative_numbers = true)]
     point: Vec<String>,
 
     /// Add up octaves of rising frequency and falling amplitude
-    #[arg(long, value_enum, value_name = "SUM")]
-    sum: Option<SumName>,
+    #[arg(long, value_name = "SUM", value_parser = sums())]
+    sum: Option<Combine>,
 
     /// How many octaves are added up [default: 9 with --sum]; without --sum, they are added as fbm. The last one fades in
     /// with the part past the point
-    #[arg(long, value_name = "N", value_parser = number_within::<1, 64>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     octaves: Option<f64>,
 
     /// The ratio between the frequencies of neighbouring octaves
-    #[arg(long, value_name = "L", default_value_t = 2.0, value_parser = number_within::<0, 64>)]
+    #[arg(long, value_name = "L", default_value_t = 2.0)]
     lacunarity: f64,
 
     /// The ratio between the amplitudes of neighbouring octaves
-    #[arg(long, value_name = "G", default_value_t = 0.5, value_parser = number_within::<0, 64>)]
+    #[arg(long, value_name = "G", default_value_t = 0.5)]
     gain: f64,
 
     /// Another seed gives another noise; 0 is the published table
@@ -58,15 +58,15 @@ pub struct Noise {
     seed: u64,
 
     /// What cellular noise tells of its feature points
-    #[arg(long, value_enum, value_name = "FEATURE", default_value = "f1")]
-    feature: FeatureName,
+    #[arg(long, value_name = "FEATURE", default_value = "f1", value_parser = features())]
+    feature: Feature,
 
     /// How cellular noise measures distances
-    #[arg(long, value_enum, value_name = "METRIC", default_value = "euclidean")]
-    metric: MetricName,
+    #[arg(long, value_name = "METRIC", default_value = "euclidean", value_parser = metrics())]
+    metric: Metric,
 
     /// How far the feature points of cellular noise stray from the middles of their cells
-    #[arg(long, value_name = "J", default_value_t = 1.0, value_parser = number_within::<0, 1>)]
+    #[arg(long, value_name = "J", default_value_t = 1.0)]
     jitter: f64,
 
     /// Displace the point so far by the same field first; again for each time this is given
@@ -83,55 +83,46 @@ pub struct Noise {
 }
 
 /// Ways to add octaves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SumName {
-    /// The noise itself: fractional Brownian motion
-    #[value(alias = "plain")]
-    Fbm,
-    /// Its absolute value
-    #[value(alias = "absolute")]
-    Turbulence,
-    /// Ridges where it passes zero: Musgrave's ridged multifractal
-    Ridged,
-    /// Smooth valleys, rough heights: Musgrave's hybrid multifractal
-    Hybrid,
+fn sums() -> impl TypedValueParser<Value = Combine> {
+    let declarations = Combine::ALL.iter().map(|sum| sum.declaration());
+    let words = declarations.map(|sum| PossibleValue::new(sum.term).alias(sum.name).help(sum.sentence));
+    PossibleValuesParser::new(words).map(|name| Combine::from_name(&name).expect("the parser accepts sums only"))
 }
 
 /// What cellular noise tells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum FeatureName {
-    /// The distance to the nearest feature point
-    F1,
-    /// The distance to the second nearest one
-    F2,
-    /// The difference of both
-    #[value(name = "f2-f1")]
-    Difference,
-    /// A random number of the nearest one
-    Cell,
+fn features() -> impl TypedValueParser<Value = Feature> {
+    let words = Feature::ALL.iter().map(|feature| {
+        PossibleValue::new(feature.name()).help(match feature {
+            Feature::First => "The distance to the nearest feature point",
+            Feature::Second => "The distance to the second nearest one",
+            Feature::Difference => "The difference of both",
+            Feature::Cell => "A random number of the nearest one",
+        })
+    });
+    PossibleValuesParser::new(words).map(|name| Feature::from_name(&name).expect("the parser accepts features only"))
 }
 
 /// How cellular noise measures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MetricName {
-    /// As the crow flies
-    Euclidean,
-    /// The sum of the distances along the axes
-    Manhattan,
-    /// The largest of them
-    Chebyshev,
+fn metrics() -> impl TypedValueParser<Value = Metric> {
+    let words = Metric::ALL.iter().map(|metric| {
+        PossibleValue::new(metric.name()).help(match metric {
+            Metric::Euclidean => "As the crow flies",
+            Metric::Manhattan => "The sum of the distances along the axes",
+            Metric::Chebyshev => "The largest of them",
+        })
+    });
+    PossibleValuesParser::new(words).map(|name| Metric::from_name(&name).expect("the parser accepts metrics only"))
 }
 
-/// A number from `LEAST` to `MOST`.
-fn number_within<const LEAST: i32, const MOST: i32>(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if (f64::from(LEAST)..=f64::from(MOST)).contains(&number) => Ok(number),
-        _ => Err(format!("expected a number from {LEAST} to {MOST}")),
-    }
+/// The noises.
+fn bases() -> impl TypedValueParser<Value = Basis> {
+    let declarations = Basis::ALL.iter().map(|basis| basis.declaration());
+    let words = declarations.map(|basis| {
+        let word = PossibleValue::new(basis.name);
+        if basis.term == basis.name { word } else { word.alias(basis.term) }
+    });
+    PossibleValuesParser::new(words).map(|name| Basis::from_name(&name).expect("the parser accepts bases only"))
 }
-
-/// Octaves when there is a sum and nothing else is said: the default depth of the materials.
-const DEFAULT_OCTAVES: f64 = 9.0;
 
 /// Longer lines hold no point.
 const LONGEST_LINE: u64 = 4096;
@@ -139,7 +130,7 @@ const LONGEST_LINE: u64 = 4096;
 impl Noise {
     /// Prints the value, or the values.
     pub fn run(self) -> Result<Outcome, Failure> {
-        let field = self.evaluation()?;
+        let field = self.field()?;
         let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
         if self.point == ["-"] {
             self.stream(&field, io::stdin().lock(), &mut out)?;
@@ -153,43 +144,20 @@ impl Noise {
         Ok(Outcome::Done)
     }
 
-    /// A plain noise is a sum of one octave.
-    fn evaluation(&self) -> Result<Field, Failure> {
-        let basis = Basis::from_name(&self.basis).expect("the parser accepts the names of bases only");
-        let metric = match self.metric {
-            MetricName::Euclidean => Metric::Euclidean,
-            MetricName::Manhattan => Metric::Manhattan,
-            MetricName::Chebyshev => Metric::Chebyshev,
+    fn field(&self) -> Result<Field, Failure> {
+        let [x, y, z] = self.period.unwrap_or_default();
+        let recipe = Recipe {
+            basis: self.basis,
+            seed: self.seed,
+            period: [x, y, z, 0],
+            cellular: Cellular { metric: self.metric, feature: self.feature, jitter: self.jitter },
+            sum: self.sum,
+            octaves: self.octaves,
+            lacunarity: self.lacunarity,
+            gain: self.gain,
+            warp: self.warp.clone(),
         };
-        let feature = match self.feature {
-            FeatureName::F1 => Feature::First,
-            FeatureName::F2 => Feature::Second,
-            FeatureName::Difference => Feature::Difference,
-            FeatureName::Cell => Feature::Cell,
-        };
-        let cellular = Cellular { metric, feature, jitter: self.jitter };
-        let mut noise = Lattice::new(basis, self.seed).with_cellular(cellular);
-        if let Some(period) = self.period {
-            noise = noise.with_period(period).map_err(|error| Failure::new(format!("--period: {error}")))?;
-        }
-        let octaves = match (self.octaves, self.sum) {
-            (Some(octaves), _) => octaves,
-            (None, Some(_)) => DEFAULT_OCTAVES,
-            (None, None) => 1.0,
-        };
-        let combine = match self.sum {
-            Some(SumName::Turbulence) => Combine::Absolute,
-            Some(SumName::Ridged) => Combine::Ridged,
-            Some(SumName::Hybrid) => Combine::Hybrid,
-            Some(SumName::Fbm) | None => Combine::Plain,
-        };
-        let sum = Sum::new(noise, combine, 0).with_octaves(octaves);
-        let sum = sum.with_lacunarity(self.lacunarity).with_gain(self.gain);
-        let field = self
-            .warp
-            .iter()
-            .fold(Field::from(sum.clone()), |source, &amount| Warp { source, by: sum.clone().into(), amount }.into());
-        Ok(field)
+        recipe.field().map_err(|error| Failure::new(format!("--{error}")))
     }
 
     fn stream(&self, field: &Field, input: impl io::Read, out: &mut impl Write) -> Result<(), Failure> {

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
+use jaspe_edge::file::Output;
+use jaspe_edge::message;
 use jaspe_render::{CompileOptions, CompiledScene, Film, RenderOptions, Stats, render};
 use jaspe_scene::Severity;
 
 use crate::Outcome;
 use crate::arguments::{DialectName, LookName, crop, size};
 use crate::failure::Failure;
-use crate::output::Output;
 use crate::progress::{Progress, When};
 use crate::scene_file::{self, Loaded};
 use crate::show::{duration, json_text, size as file_size};
@@ -129,7 +130,7 @@ impl Render {
         let loaded = scene_file::load(&self.scene, &self.set, &self.compile_options())?;
         self.print_diagnostics(&loaded);
         let Some(scene) = &loaded.scene else {
-            eprintln!("{}: {}; nothing was rendered", self.scene.display(), report::summary(&loaded.diagnostics));
+            eprintln!("{}: {}; nothing was rendered", self.scene.display(), message::summary(&loaded.diagnostics));
             return Ok(Outcome::Found);
         };
         self.check_crop(scene)?;
@@ -137,6 +138,9 @@ impl Render {
         let rendering = Instant::now();
         let (film, stats) = self.render(scene)?;
         let render_time = rendering.elapsed();
+        if interrupt::asked() {
+            return Err(Failure::Interrupted);
+        }
         let writing = Instant::now();
         let byte_count = output.write(&film)?;
         let times = Times {

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
-use jaspe_render::{Encoding, Film, srgb_decode};
+use jaspe_edge::file::Output;
+use jaspe_render::swatch;
 use jaspe_texture::declare::Value;
-use jaspe_texture::{BuildError, Space, Texture as Material};
+use jaspe_texture::{BuildError, Texture as Material};
 
 use crate::Outcome;
 use crate::arguments::{Assignment, assignment, size};
 use crate::command::textures::names;
 use crate::failure::{Failure, nearest};
-use crate::output::Output;
 use crate::show::{duration, size as file_size};
 use crate::terminal;
 
@@ -62,19 +62,13 @@ fn factor(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "expected a number from 0.000001 to 1000000".to_owned())
 }
 
-/// Samples along each edge of a pixel: wood has sharp rings.
-const SAMPLE_COUNT: usize = 3;
-
-/// Not a whole number of cells at any material's frequency: there all gradient noises vanish.
-const SLICE: f64 = 0.35;
-
 impl Texture {
     /// Draws and writes.
     pub fn run(self) -> Result<Outcome, Failure> {
         let started = Instant::now();
         let material = self.build()?;
         let output = Output::new(&self.output, None)?;
-        let film = self.draw(&material);
+        let film = swatch(&material, self.size, self.scale);
         let byte_count = output.write(&film)?;
         if self.show {
             terminal::show(&film);
@@ -109,65 +103,5 @@ impl Texture {
     fn refused(&self, error: &BuildError) -> Failure {
         let hint = format!("`jaspe textures {}` lists its parameters", self.name);
         Failure::new(format!("--set: {error}")).hint(hint)
-    }
-
-    fn draw(&self, material: &Material) -> Film {
-        let [width, height] = self.size.map(|side| side as usize);
-        let columns = SAMPLE_COUNT * width;
-        let mut film = Film::new(self.size[0], self.size[1], Encoding::Linear);
-        let plane = Plane::new(material.space(), self.size, self.scale);
-        let x: Vec<f32> = (0..columns).map(|i| plane.x(i)).collect();
-        let z = vec![(SLICE / self.scale) as f32; columns];
-        let mut colors = vec![[0.0; 3]; columns];
-        for (row, pixels) in film.pixels.chunks_exact_mut(width).enumerate() {
-            for j in 0..SAMPLE_COUNT {
-                let y = vec![plane.y(row * SAMPLE_COUNT + j); columns];
-                match material.space() {
-                    Space::Uv => material.colors([&x, &y], &mut colors),
-                    Space::Local | Space::World => material.colors([&x, &y, &z], &mut colors),
-                }
-                for (pixel, samples) in pixels.iter_mut().zip(colors.chunks_exact(SAMPLE_COUNT)) {
-                    add(pixel, samples);
-                }
-            }
-        }
-        debug_assert_eq!(film.pixels.len(), width * height);
-        film
-    }
-}
-
-/// Adds the light of some of a pixel's samples.
-fn add(pixel: &mut jaspe_render::Pixel, samples: &[[f32; 3]]) {
-    let share = 1.0 / (SAMPLE_COUNT * SAMPLE_COUNT) as f32;
-    for sample in samples {
-        (0..3).for_each(|i| pixel[i] += share * srgb_decode(f64::from(sample[i])) as f32);
-    }
-    pixel[3] = 1.0;
-}
-
-/// Where samples lie: y upwards, the origin in the middle of the picture (u and v: in its lower left corner).
-struct Plane {
-    step: f64,
-    left: f64,
-    top: f64,
-}
-
-impl Plane {
-    fn new(space: Space, [width, height]: [u32; 2], scale: f64) -> Self {
-        let across = if space == Space::Uv { 1.0 } else { 2.0 };
-        let step = across / (f64::from(width.min(height)) * SAMPLE_COUNT as f64 * scale);
-        let [width, height] = [width, height].map(|side| f64::from(side) * SAMPLE_COUNT as f64);
-        match space {
-            Space::Uv => Plane { step, left: 0.5, top: height - 0.5 },
-            Space::Local | Space::World => Plane { step, left: 0.5 - 0.5 * width, top: 0.5 * height - 0.5 },
-        }
-    }
-
-    fn x(&self, column: usize) -> f32 {
-        (self.step * (self.left + column as f64)) as f32
-    }
-
-    fn y(&self, row: usize) -> f32 {
-        (self.step * (self.top - row as f64)) as f32
     }
 }

@@ -18,6 +18,25 @@ pub enum Metric {
     Chebyshev,
 }
 
+impl Metric {
+    /// Every metric.
+    pub const ALL: &[Metric] = &[Metric::Euclidean, Metric::Manhattan, Metric::Chebyshev];
+
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Metric::Euclidean => "euclidean",
+            Metric::Manhattan => "manhattan",
+            Metric::Chebyshev => "chebyshev",
+        }
+    }
+
+    /// The metric of this name.
+    pub fn from_name(name: &str) -> Option<Metric> {
+        Metric::ALL.iter().copied().find(|metric| metric.name() == name)
+    }
+}
+
 /// What cellular noise tells of the feature points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Feature {
@@ -29,6 +48,26 @@ pub enum Feature {
     Difference,
     /// A random number in [-1, 1), the same wherever the same feature point is the nearest one.
     Cell,
+}
+
+impl Feature {
+    /// Every feature.
+    pub const ALL: &[Feature] = &[Feature::First, Feature::Second, Feature::Difference, Feature::Cell];
+
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Feature::First => "f1",
+            Feature::Second => "f2",
+            Feature::Difference => "f2-f1",
+            Feature::Cell => "cell",
+        }
+    }
+
+    /// The feature of this name.
+    pub fn from_name(name: &str) -> Option<Feature> {
+        Feature::ALL.iter().copied().find(|feature| feature.name() == name)
+    }
 }
 
 /// The parameters of cellular noise.

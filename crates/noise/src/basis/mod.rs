@@ -10,6 +10,7 @@ pub(crate) mod simplex;
 pub(crate) mod value;
 pub(crate) mod white;
 
+use crate::declaration::{BASES, Declaration};
 use crate::number::Real;
 use crate::seed;
 use crate::table::{ByteTable, CornerTables, FloatTable, PairTable};
@@ -43,9 +44,9 @@ impl Basis {
         self.declaration().name
     }
 
-    /// The basis of this name.
+    /// The basis of this name or term.
     pub fn from_name(name: &str) -> Option<Basis> {
-        Basis::ALL.iter().copied().find(|basis| basis.name() == name)
+        Declaration::find(BASES, name)
     }
 }
 

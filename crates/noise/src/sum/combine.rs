@@ -1,5 +1,6 @@
 //! What an octave adds to a sum, and how the octaves before weigh on it.
 
+use crate::declaration::{Declaration, SUMS};
 use crate::number::{Dual, Real};
 
 /// What Musgrave adds to the noise in the hybrid sum.
@@ -32,9 +33,9 @@ impl Combine {
         self.declaration().name
     }
 
-    /// The way of this name.
+    /// The way of this name or term.
     pub fn from_name(name: &str) -> Option<Combine> {
-        Combine::ALL.iter().copied().find(|combine| combine.name() == name)
+        Declaration::find(SUMS, name)
     }
 
     /// Whether the octaves are independent of each other.

@@ -1,13 +1,13 @@
 //! Pictures and other files, written whole or not at all.
 
+use std::fmt::Display;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use jaspe_render::{Depth, Film, Format, encode};
 
-use crate::failure::{Failure, plain};
-use crate::interrupt;
+use crate::refusal::{Refusal, plain};
 
 /// Where a picture goes and as what: checked before any long work begins.
 #[derive(Debug)]
@@ -24,11 +24,11 @@ pub struct Target {
 
 impl Output {
     /// Decides on the format and makes sure that the file can be written.
-    pub fn new(path: &Path, bits: Option<u8>) -> Result<Self, Failure> {
+    pub fn new(path: &Path, bits: Option<u8>) -> Result<Self, Refusal> {
         let format = Format::from_path(path).map_err(|error| {
             let known = Format::EXTENSIONS.iter().map(|extension| format!(".{extension}")).collect::<Vec<_>>();
-            let failure = Failure::writing(path, error);
-            failure.hint(format!("the extension chooses the format: {}", known.join(", ")))
+            let refusal = writing(path, error);
+            refusal.hint(format!("the extension chooses the format: {}", known.join(", ")))
         })?;
         let format = match bits {
             None => format,
@@ -43,10 +43,10 @@ impl Output {
     }
 
     /// Encodes a film, writes it and returns the size of the file.
-    pub fn write(&self, film: &Film) -> Result<usize, Failure> {
+    pub fn write(&self, film: &Film) -> Result<usize, Refusal> {
         let bytes = encode(film, self.format).map_err(|error| {
             let message = format!("`{}` {error}", self.path().display());
-            Failure::new(message).hint("choose another format by its extension, such as .png")
+            Refusal::new(message).hint("choose another format by its extension, such as .png")
         })?;
         self.target.write(&bytes)?;
         Ok(bytes.len())
@@ -55,18 +55,15 @@ impl Output {
 
 impl Target {
     /// Makes sure that the file can be written.
-    pub fn new(path: &Path) -> Result<Self, Failure> {
+    pub fn new(path: &Path) -> Result<Self, Refusal> {
         let target = Target { path: path.to_owned() };
         target.check()?;
         Ok(target)
     }
 
     /// Writes it.
-    pub fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
-        if interrupt::asked() {
-            return Err(Failure::Interrupted);
-        }
-        self.store(bytes).map_err(|error| Failure::writing(&self.path, plain(&error)))
+    pub fn write(&self, bytes: &[u8]) -> Result<(), Refusal> {
+        self.store(bytes).map_err(|error| writing(&self.path, plain(&error)))
     }
 
     /// Beside the final file and then renamed, so that nobody ever sees half a picture.
@@ -87,15 +84,15 @@ impl Target {
         fs::metadata(&self.path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
     }
 
-    fn check(&self) -> Result<(), Failure> {
-        let failure = |reason: &str| Failure::writing(&self.path, reason);
+    fn check(&self) -> Result<(), Refusal> {
+        let refusal = |reason: &str| writing(&self.path, reason);
         if self.path.is_dir() {
-            return Err(failure("it is a folder").hint("name a file in it"));
+            return Err(refusal("it is a folder").hint("name a file in it"));
         }
         let folder = folder_of(&self.path);
         if !folder.is_dir() {
             let command = format!("create it first: mkdir -p {}", folder.display());
-            return Err(failure(&format!("there is no folder `{}`", folder.display())).hint(command));
+            return Err(refusal(&format!("there is no folder `{}`", folder.display())).hint(command));
         }
         if self.is_special() {
             return Ok(());
@@ -103,16 +100,21 @@ impl Target {
         // The only honest test of a folder is to write into it.
         match temporary(folder) {
             Ok(_) => Ok(()),
-            Err(error) => Err(failure(&plain(&error)).hint("choose another place with -o FILE")),
+            Err(error) => Err(refusal(&plain(&error)).hint("choose another place")),
         }
     }
 }
 
-fn with_bits(format: Format, bits: u8) -> Result<Format, Failure> {
+/// `path` could not be written.
+fn writing(path: &Path, error: impl Display) -> Refusal {
+    Refusal::new(format!("cannot write `{}`: {error}", path.display()))
+}
+
+fn with_bits(format: Format, bits: u8) -> Result<Format, Refusal> {
     let depth = if bits == 16 { Depth::Sixteen } else { Depth::Eight };
     format.with_depth(depth).ok_or_else(|| {
-        let failure = Failure::new(format!("{} offers no choice of bits", format.name()));
-        failure.hint("leave --bits out, or write .png or .tiff")
+        let refusal = Refusal::new(format!("{} offers no choice of bits", format.name()));
+        refusal.hint("leave the bits out, or write .png or .tiff")
     })
 }
 

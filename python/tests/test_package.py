@@ -1,0 +1,33 @@
+"""The package as a whole: stubs, types, examples in docstrings."""
+
+from __future__ import annotations
+
+import doctest
+import subprocess
+import sys
+from pathlib import Path
+
+import jaspe
+import jaspe._declarations
+import jaspe.noise
+
+PYTHON = Path(__file__).parents[1]
+
+
+def test_stubs_are_those_of_the_declarations() -> None:
+    done = subprocess.run([sys.executable, PYTHON / "stubs.py", "--check"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_examples_in_docstrings_hold() -> None:
+    tried = 0
+    for module in (jaspe, jaspe.noise, jaspe._declarations):
+        result = doctest.testmod(module)
+        assert result.failed == 0, module
+        tried += result.attempted
+    assert tried >= 10
+
+
+def test_the_package_says_its_version_and_its_names() -> None:
+    assert jaspe.__version__.count(".") == 2
+    assert all(hasattr(jaspe, name) for name in jaspe.__all__)
