@@ -1,6 +1,6 @@
 """Writes the type stubs of what the libraries declare: `python python/stubs.py [--check]`.
 
-`jaspe/noise.pyi` as a whole, and the parameters of materials in `jaspe/_jaspe.pyi`.
+`jaspe/noise.pyi` as a whole, and the maps and the parameters of materials in `jaspe/_jaspe.pyi`.
 """
 
 import inspect
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Callable
 
 import jaspe
-from jaspe import noise
+from jaspe import _jaspe, noise
 
 FOLDER = Path(__file__).parent / "jaspe"
 
@@ -106,7 +106,10 @@ def properties() -> str:
 def native(text: str) -> str:
     """The stub of the native part, with the parameters of today."""
     block = re.compile(r"(# <declared>\n).*?(    # </declared>)", re.DOTALL)
-    return block.sub(lambda found: f"{found[1]}{properties()}\n{found[2]}", text)
+    text = block.sub(lambda found: f"{found[1]}{properties()}\n{found[2]}", text)
+    maps = ", ".join(f'"{entry["name"]}"' for entry in _jaspe.declarations()["maps"])
+    block = re.compile(r"(# <maps>\n).*?(# </maps>)", re.DOTALL)
+    return block.sub(lambda found: f"{found[1]}_Map = Literal[{maps}]\n{found[2]}", text)
 
 
 def main() -> None:

@@ -17,6 +17,8 @@ Six materials, each a colour at every point of space:
     >>> marble.image(size=64)
     <jaspe.Image 64 x 64>
 
+Scenes in the language of the Sunflow renderer, read, changed and rendered: `load`, `loads`. Notebooks show them.
+
 The same input gives the same bits on every machine, on any number of threads, and the same as the command line and the
 Rust libraries.
 """
@@ -27,14 +29,22 @@ from . import noise
 from ._declarations import Declaration, Parameter, textures
 from ._errors import Diagnostic, SceneError
 from ._jaspe import Image, Texture, __version__
+from ._maps import Maps
+from ._scene import Scene, Shader, Shaders, load, loads
 
 __all__ = [
     "Declaration",
     "Diagnostic",
     "Image",
+    "Maps",
     "Parameter",
+    "Scene",
     "SceneError",
+    "Shader",
+    "Shaders",
     "Texture",
+    "load",
+    "loads",
     "noise",
     "textures",
     "__version__",

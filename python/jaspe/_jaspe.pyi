@@ -1,12 +1,19 @@
 import os
-from typing import Any, Literal, Mapping, Optional, Sequence, Union, final
+from typing import Any, Callable, Literal, Mapping, Optional, Sequence, Union, final
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-__all__ = ["Image", "Texture", "__version__", "_texture", "declarations", "noise"]
+from ._errors import Diagnostic
+from ._maps import Maps
+
+__all__ = ["Image", "Scene", "Texture", "__version__", "_texture", "declarations", "noise"]
 
 __version__: str
+
+# <maps>
+_Map = Literal["color", "height", "normal", "roughness", "ao", "emission"]
+# </maps>
 
 def declarations() -> dict[str, Any]: ...
 def noise(
@@ -56,6 +63,38 @@ class Image:
     __hash__: None  # type: ignore[assignment]
 
 @final
+class Scene:
+    def __new__(
+        cls, path: str, text: Optional[bytes], files: Mapping[str, bytes], disk: bool, assignments: Sequence[str]
+    ) -> Scene: ...
+    @property
+    def path(self) -> str: ...
+    def set(self, assignment: str) -> None: ...
+    def parameters(self, name: str) -> dict[str, Any]: ...
+    def shaders(self) -> list[tuple[str, str]]: ...
+    def textures(self) -> list[tuple[str, str]]: ...
+    def diagnostics(self) -> list[Diagnostic]: ...
+    def text(self) -> bytes: ...
+    def parts(self) -> tuple[str, bytes, dict[str, bytes], list[str]]: ...
+    def resolution(
+        self, resolution: Optional[Sequence[int]] = None, dialect: Optional[str] = None
+    ) -> tuple[int, int]: ...
+    def render(
+        self,
+        *,
+        resolution: Optional[Sequence[int]],
+        samples: Optional[int],
+        aa: Optional[Sequence[int]],
+        seed: int,
+        crop: Optional[Sequence[int]],
+        threads: Optional[int],
+        dialect: Optional[str],
+        look: Optional[str],
+        layers: Sequence[str],
+        progress: Optional[Callable[[int, int], object]],
+    ) -> Image: ...
+
+@final
 class Texture:
     def __new__(cls, name: str, /, **parameters: Any) -> Texture: ...
     @property
@@ -65,6 +104,18 @@ class Texture:
     def sample(self, points: ArrayLike) -> NDArray[np.float32]: ...
     def field(self, points: ArrayLike) -> NDArray[np.float32]: ...
     def image(self, size: Union[int, tuple[int, int], None] = None, scale: float = 1.0) -> Image: ...
+    def bake(
+        self,
+        size: int = 1024,
+        maps: Optional[Sequence[_Map]] = None,
+        *,
+        tile: Optional[float] = None,
+        normal: Literal["gl", "dx"] = "gl",
+        frames: Optional[int] = None,
+        cells: int = 1,
+        frame: int = 0,
+        progress: Optional[Callable[[int, int], object]] = None,
+    ) -> Maps: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     def __eq__(self, other: object, /) -> bool: ...
     # <declared>

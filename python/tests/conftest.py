@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import os
 import subprocess
-from pathlib import Path
 from typing import Callable
 
 import pytest
-
-ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="session")

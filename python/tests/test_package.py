@@ -9,6 +9,7 @@ from pathlib import Path
 
 import jaspe
 import jaspe._declarations
+import jaspe._scene
 import jaspe.noise
 
 PYTHON = Path(__file__).parents[1]
@@ -21,7 +22,7 @@ def test_stubs_are_those_of_the_declarations() -> None:
 
 def test_examples_in_docstrings_hold() -> None:
     tried = 0
-    for module in (jaspe, jaspe.noise, jaspe._declarations):
+    for module in (jaspe, jaspe.noise, jaspe._declarations, jaspe._scene):
         result = doctest.testmod(module)
         assert result.failed == 0, module
         tried += result.attempted

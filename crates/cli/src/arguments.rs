@@ -1,6 +1,7 @@
 //! Values that several commands take, and how they are read from words.
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use jaspe_render::Look;
 use jaspe_scene::Dialect;
 
@@ -17,48 +18,28 @@ pub enum OutputFormat {
 }
 
 /// Whose meaning a scene's words have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum DialectName {
-    /// Sunflow's: inverse-square lights, linear light
-    Sunflow,
-    /// That of the 2010 program: its camera, lights, mirrors and display colours
-    Report,
-}
-
-impl From<DialectName> for Dialect {
-    fn from(name: DialectName) -> Dialect {
-        match name {
-            DialectName::Sunflow => Dialect::Sunflow,
-            DialectName::Report => Dialect::Report,
-        }
-    }
+pub fn dialect() -> impl TypedValueParser<Value = Dialect> {
+    let words = Dialect::ALL.iter().map(|dialect| {
+        PossibleValue::new(dialect.name()).help(match dialect {
+            Dialect::Sunflow => "Sunflow's: inverse-square lights, linear light",
+            Dialect::Report => "That of the 2010 program: its camera, lights, mirrors and display colours",
+        })
+    });
+    PossibleValuesParser::new(words).map(|name| Dialect::from_name(&name).expect("the parser accepts dialects only"))
 }
 
 /// Quick looks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum LookName {
-    /// Directions of the surfaces as colours
-    Normals,
-    /// Texture coordinates as red and green
-    Uvs,
-    /// A colour per object
-    Ids,
-    /// Ambient occlusion
-    Ambocc,
-    /// Matte grey under the scene's lights
-    Gray,
-}
-
-impl From<LookName> for Look {
-    fn from(name: LookName) -> Look {
-        match name {
-            LookName::Normals => Look::Normals,
-            LookName::Uvs => Look::Uvs,
-            LookName::Ids => Look::Ids,
-            LookName::Ambocc => Look::AmbientOcclusion,
-            LookName::Gray => Look::Gray,
-        }
-    }
+pub fn look() -> impl TypedValueParser<Value = Look> {
+    let words = Look::ALL.iter().map(|look| {
+        PossibleValue::new(look.name()).help(match look {
+            Look::Normals => "Directions of the surfaces as colours",
+            Look::Uvs => "Texture coordinates as red and green",
+            Look::Ids => "A colour per object",
+            Look::AmbientOcclusion => "Ambient occlusion",
+            Look::Gray => "Matte grey under the scene's lights",
+        })
+    });
+    PossibleValuesParser::new(words).map(|name| Look::from_name(&name).expect("the parser accepts looks only"))
 }
 
 /// `WIDTHxHEIGHT` in pixels.

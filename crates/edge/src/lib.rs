@@ -1,5 +1,5 @@
 //! What the command line and the Python package share, where they meet their users: messages with excerpts of the
-//! scene ([`message`]), and files that appear whole or not at all ([`file`]). Nothing is printed here.
+//! scene ([`message`]), and files that appear whole or not at all ([`mod@file`]). Nothing is printed here.
 
 pub mod file;
 mod locate;

@@ -6,6 +6,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::error::unknown_word;
 use crate::points::{self, CHUNK, Points};
 
 /// The value of a noise, or of a sum over its octaves, at every point.
@@ -68,14 +69,7 @@ fn word<T>(
     meaning: Option<T>,
     words: impl Iterator<Item = &'static str> + Clone,
 ) -> PyResult<T> {
-    meaning.ok_or_else(|| {
-        let expected = words.clone().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
-        let message = format!("{parameter}: expected one of {expected}, found \"{found}\"");
-        PyValueError::new_err(match jaspe_scene::nearest(found, words) {
-            Some(nearest) => format!("{message}; did you mean \"{nearest}\"?"),
-            None => message,
-        })
-    })
+    meaning.ok_or_else(|| unknown_word(parameter, found, words))
 }
 
 /// A seed from any whole number that fits.

@@ -2,6 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use jaspe_bake::{Loop, Settings};
 use jaspe_render::swatch;
 use jaspe_texture::declare::{Declaration, Kind, Parameter, Value};
 use jaspe_texture::{BuildError, Space, Texture as Material};
@@ -10,6 +11,7 @@ use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyString, PyTuple};
 
+use crate::bake;
 use crate::error::value_error;
 use crate::image::Image;
 use crate::noise::shown;
@@ -145,6 +147,42 @@ impl Texture {
         let (material, pool) = (self.material(), work::pool()?);
         let film = work::interruptible(py, None, move |_| pool.install(|| swatch(&material, size, scale)))?;
         Ok(Image::new(film, Vec::new()))
+    }
+
+    /// Bakes maps that tile without a seam, exactly periodic and not blended: `texture.bake(512, ["color", "normal"])`. Each
+    /// is float32 from 0 to 1, of shape (size, size) or (size, size, 3): "color" and "emission" display-encoded, "height" from the
+    /// lowest to the highest point, "normal" with 0.5 in the middle, "roughness", "ao". All but "emission" unless named.
+    ///
+    /// `tile` is the side in units of the texture, by default what shows the material well. Green points up in a normal map
+    /// of OpenGL ("gl") and down in one of DirectX ("dx"). `frames` makes it one of a sequence that returns to its beginning
+    /// after `cells` noise cells of time. Normals come from exact derivatives. `progress` is called with what is done and
+    /// the total.
+    #[pyo3(signature = (
+        size = 1024, maps = None, *, tile = None, normal = "gl", frames = None, cells = 1, frame = 0, progress = None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "they are named where this is called")]
+    fn bake<'py>(
+        &self,
+        py: Python<'py>,
+        size: u32,
+        maps: Option<Vec<String>>,
+        tile: Option<f64>,
+        normal: &str,
+        frames: Option<u32>,
+        cells: u32,
+        frame: u32,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let defaults = Settings::default();
+        let settings = Settings {
+            size,
+            tile,
+            maps: maps.map_or(Ok(defaults.maps), |maps| bake::maps_called(&maps))?,
+            normal: bake::convention_called(normal)?,
+            animation: frames.map(|frames| Loop { frames, cells }),
+            ..Settings::default()
+        };
+        bake::bake(py, self.material(), settings, frame, progress)
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {

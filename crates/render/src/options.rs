@@ -5,7 +5,7 @@ use jaspe_scene::Dialect;
 use crate::clock::Spent;
 
 /// Choices that are made when a scene is compiled.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CompileOptions {
     /// Whose meaning the scene's words have; `None` leaves it to the scene.
     pub dialect: Option<Dialect>,
@@ -32,6 +32,27 @@ pub enum Look {
     AmbientOcclusion,
     /// Matte grey under the scene's lights.
     Gray,
+}
+
+impl Look {
+    /// Every look.
+    pub const ALL: &[Look] = &[Look::Normals, Look::Uvs, Look::Ids, Look::AmbientOcclusion, Look::Gray];
+
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Look::Normals => "normals",
+            Look::Uvs => "uvs",
+            Look::Ids => "ids",
+            Look::AmbientOcclusion => "ambocc",
+            Look::Gray => "gray",
+        }
+    }
+
+    /// The look of this name.
+    pub fn from_name(name: &str) -> Option<Look> {
+        Look::ALL.iter().copied().find(|look| look.name() == name)
+    }
 }
 
 /// Choices that are made for one rendering.

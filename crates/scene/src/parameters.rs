@@ -18,6 +18,8 @@ pub enum Parameter {
     Color([f64; 3]),
     /// A word, or the name of a texture or a file.
     Word(String),
+    /// What follows from the surroundings, since nothing was written.
+    Auto,
 }
 
 /// Every keyword of a shader, or else of a texture, that has a value: those that were written, and the defaults of the
@@ -45,7 +47,7 @@ fn declared(declaration: &'static Declaration, settings: &[Setting]) -> Vec<(&'s
             Value::Float(value) => Parameter::Float(value),
             Value::Color(display) => Parameter::Color(display.map(|part| short(srgb_decode(part) as f32))),
             Value::Choice(word) => Parameter::Word(word.to_owned()),
-            Value::Auto => Parameter::Word("auto".to_owned()),
+            Value::Auto => Parameter::Auto,
         },
     };
     declaration.parameters.iter().map(|parameter| (parameter.name, value(parameter))).collect()

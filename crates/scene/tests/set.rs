@@ -135,6 +135,7 @@ fn text(value: &Parameter) -> String {
         Parameter::Floats(values) => numbers(values),
         Parameter::Color(color) => numbers(color),
         Parameter::Word(word) => word.clone(),
+        Parameter::Auto => unreachable!("it cannot be written"),
     }
 }
 
@@ -159,7 +160,7 @@ fn parameters_are_read_as_they_are_set() {
     let mut count = 0;
     for name in names.iter().map(String::as_str).chain(["t"]) {
         let before = parameters(&scene, name).expect("it is there");
-        for (key, value) in before.iter().filter(|(key, _)| *key != "space") {
+        for (key, value) in before.iter().filter(|(_, value)| *value != Parameter::Auto) {
             set(&mut scene, &format!("{name}.{key}={}", text(value))).expect("it takes what it had");
             count += 1;
         }

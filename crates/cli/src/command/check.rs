@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use clap::Args;
 use jaspe_edge::message;
 use jaspe_render::CompileOptions;
-use jaspe_scene::Severity;
+use jaspe_scene::{Dialect, Severity};
 use serde_json::json;
 
 use crate::Outcome;
-use crate::arguments::{DialectName, OutputFormat};
+use crate::arguments::{OutputFormat, dialect};
 use crate::failure::Failure;
 use crate::{report, scene_file};
 
@@ -33,8 +33,8 @@ pub struct Check {
     format: OutputFormat,
 
     /// Whose meaning the scene's words have [default: what the scene says, else sunflow]
-    #[arg(long, value_enum, value_name = "DIALECT")]
-    dialect: Option<DialectName>,
+    #[arg(long, value_name = "DIALECT", value_parser = dialect())]
+    dialect: Option<Dialect>,
 
     /// Change a parameter of a named shader before checking
     #[arg(long, value_name = "NAME.KEY=VALUE")]
@@ -44,7 +44,7 @@ pub struct Check {
 impl Check {
     /// Checks and prints.
     pub fn run(self) -> Result<Outcome, Failure> {
-        let options = CompileOptions { dialect: self.dialect.map(Into::into), ..CompileOptions::default() };
+        let options = CompileOptions { dialect: self.dialect, ..CompileOptions::default() };
         let loaded = scene_file::load(&self.scene, &self.set, &options)?;
         let (diagnostics, sources) = (&loaded.diagnostics, &loaded.sources);
         match self.format {

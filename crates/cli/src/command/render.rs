@@ -7,11 +7,11 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use jaspe_edge::file::Output;
 use jaspe_edge::message;
-use jaspe_render::{CompileOptions, CompiledScene, Film, RenderOptions, Stats, render};
-use jaspe_scene::Severity;
+use jaspe_render::{CompileOptions, CompiledScene, Film, Look, RenderOptions, Stats, render};
+use jaspe_scene::{Dialect, Severity};
 
 use crate::Outcome;
-use crate::arguments::{DialectName, LookName, crop, size};
+use crate::arguments::{crop, dialect, look, size};
 use crate::failure::Failure;
 use crate::progress::{Progress, When};
 use crate::scene_file::{self, Loaded};
@@ -68,12 +68,12 @@ pub struct Render {
     crop: Option<[u32; 4]>,
 
     /// Whose meaning the scene's words have [default: what the scene says, else sunflow]
-    #[arg(long, value_enum, value_name = "DIALECT")]
-    dialect: Option<DialectName>,
+    #[arg(long, value_name = "DIALECT", value_parser = dialect())]
+    dialect: Option<Dialect>,
 
     /// A quick look in place of every shader
-    #[arg(long = "override", value_enum, value_name = "LOOK")]
-    look: Option<LookName>,
+    #[arg(long = "override", value_name = "LOOK", value_parser = look())]
+    look: Option<Look>,
 
     /// Change a parameter of a named shader, such as floor.depth=3; may be repeated
     #[arg(long, value_name = "NAME.KEY=VALUE")]
@@ -173,11 +173,11 @@ impl Render {
 
     fn compile_options(&self) -> CompileOptions {
         CompileOptions {
-            dialect: self.dialect.map(Into::into),
+            dialect: self.dialect,
             resolution: self.resolution,
             samples: self.samples,
             aa: self.aa.as_deref().and_then(|range| range.try_into().ok()),
-            look: self.look.map(Into::into),
+            look: self.look,
         }
     }
 

@@ -42,6 +42,24 @@ pub enum Dialect {
     Report,
 }
 
+impl Dialect {
+    /// Every dialect.
+    pub const ALL: &[Dialect] = &[Dialect::Sunflow, Dialect::Report];
+
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Dialect::Sunflow => "sunflow",
+            Dialect::Report => "report",
+        }
+    }
+
+    /// The dialect of this name.
+    pub fn from_name(name: &str) -> Option<Dialect> {
+        Dialect::ALL.iter().copied().find(|dialect| dialect.name() == name)
+    }
+}
+
 /// A whole scene, with everything that it includes.
 #[derive(Debug, Clone, Default)]
 pub struct Scene {

@@ -163,7 +163,7 @@ fn override_shader(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
 }
 
 fn dialect(parser: &mut Parser<'_>, _: Token) -> Parsed<()> {
-    let choices = [("sunflow", Dialect::Sunflow), ("report", Dialect::Report)];
+    let choices: Vec<_> = Dialect::ALL.iter().map(|&dialect| (dialect.name(), dialect)).collect();
     let dialect = parser.choice("a dialect", &choices)?;
     if let Some(first) = parser.scene.dialect.filter(|first| first.value != dialect.value) {
         let diagnostic = Diagnostic::error(dialect.span, "the scene names two dialects");
