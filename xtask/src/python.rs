@@ -108,6 +108,7 @@ fn install(python: &Path) -> Result<(), String> {
 
 /// The command line program, with which results are compared.
 fn program() -> Result<PathBuf, String> {
-    run(&mut cargo(&["build", "--profile", "checked", "--package", "jaspe"]))?;
+    // With the features of the whole workspace, as the tests build it.
+    run(&mut cargo(&["build", "--workspace", "--exclude", "jaspe-python", "--bins", "--profile", "checked"]))?;
     Ok(target().join("checked").join(format!("jaspe{}", std::env::consts::EXE_SUFFIX)))
 }

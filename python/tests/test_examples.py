@@ -1,0 +1,53 @@
+"""The notebooks in `examples/`: each runs from top to bottom, its code has the right types, and its outputs are current in kind."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+nbclient: Any = pytest.importorskip("nbclient")
+nbformat: Any = pytest.importorskip("nbformat")
+pytest.importorskip("matplotlib")
+pytest.importorskip("distributed")
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.ipynb"))
+
+
+def kinds(book: Any) -> list[list[str]]:
+    """For each cell with code, the kinds of its outputs."""
+    cells = [cell for cell in book.cells if cell.cell_type == "code"]
+    return [sorted(kind for output in cell.outputs for kind in output.get("data", {})) for cell in cells]
+
+
+def test_there_are_notebooks() -> None:
+    assert {path.stem for path in EXAMPLES} >= {"noise", "material", "bake", "frames"}
+    assert sum(path.stat().st_size for path in EXAMPLES) < 4_000_000
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_notebooks_run(path: Path, tmp_path: Path) -> None:
+    stored = nbformat.read(path, as_version=4)
+    book = nbformat.read(path, as_version=4)
+    nbformat.validate(book)
+    client = nbclient.NotebookClient(book, timeout=300, resources={"metadata": {"path": str(tmp_path)}})
+    client.execute()
+    # What is stored was made by these cells.
+    assert kinds(book) == kinds(stored)
+    assert any("image/png" in found for found in kinds(book))
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="the types of Matplotlib and NumPy are written for later versions")
+def test_notebooks_have_the_right_types(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    for path in EXAMPLES:
+        book = nbformat.read(path, as_version=4)
+        code = "\n\n".join(cell.source.rstrip(";") for cell in book.cells if cell.cell_type == "code")
+        (tmp_path / f"{path.stem}_notebook.py").write_text(code + "\n", "utf-8")
+    command = [sys.executable, "-m", "mypy", "--strict", "--allow-untyped-calls", *map(str, tmp_path.glob("*.py"))]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env={**os.environ, "MYPYPATH": ""})
+    assert done.returncode == 0, done.stdout
