@@ -3,12 +3,12 @@
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use jaspe_noise::Noise;
 use jaspe_render::{Cancelled, Observer};
 use jaspe_texture::Texture;
 use rayon::prelude::*;
 
 use crate::field::Field;
+use crate::layout::Layout;
 use crate::map::{Map, NormalConvention};
 use crate::surface::{Frame, Surface};
 
@@ -17,8 +17,9 @@ use crate::surface::{Frame, Surface};
 pub struct Settings {
     /// The width of the maps in pixels; their height follows from the surface.
     pub size: u32,
-    /// How much of the material they show, in units of the texture: the side of a plane. `None` is what shows the material
-    /// well. (On a plane, the material is scaled by some per cent, so that a whole number of noise cells fits.)
+    /// The width of the surface in units of the texture: the side of a plane or a cube, the diameter of a sphere or a cylinder,
+    /// the longest side of the box around a mesh. `None` is what shows the material well on a plane, 2 as for the unit sphere,
+    /// and a mesh's own width. (On a plane, the material is scaled by some per cent, so that a whole number of noise cells fits.)
     pub tile: Option<f64>,
     /// What is unrolled into the maps.
     pub surface: Surface,
@@ -35,6 +36,8 @@ pub struct Settings {
 pub struct Loop {
     /// How many frames; after the last one comes the first again.
     pub frames: u32,
+    /// The number of the first one, for the names of files.
+    pub first: u32,
     /// How many noise cells of time pass meanwhile: more is livelier.
     pub cells: u32,
 }
@@ -53,6 +56,14 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// The maps that tell all of a material: the five that every one has, and emission where it glows.
+    pub fn maps_of(texture: &Texture) -> Vec<Map> {
+        let glows = texture.finish().emission > 0.0;
+        Map::ALL.iter().copied().filter(|&map| map != Map::Emission || glows).collect()
+    }
+}
+
 /// Why settings cannot be baked.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BakeError {
@@ -62,7 +73,7 @@ pub enum BakeError {
     Tile(f64),
     /// A tile holds more noise cells than its pixels can show.
     TooFine {
-        /// The noise cells along a side.
+        /// The noise cells along the width of the surface.
         cells: f64,
         /// The most that pixels can show.
         most: f64,
@@ -71,6 +82,8 @@ pub enum BakeError {
     NoMaps,
     /// A map was asked for twice.
     Twice(Map),
+    /// The texture coordinates of a mesh cover no pixel.
+    NoLayout,
     /// An animation without frames or without time, or with too much of it.
     Animation(Loop),
 }
@@ -83,9 +96,10 @@ impl fmt::Display for BakeError {
             BakeError::TooFine { cells, most } => {
                 write!(f, "{cells:.0} noise cells along a side, where pixels can show {most:.0}")
             }
+            BakeError::NoLayout => f.write_str("the texture coordinates of the mesh cover no pixel"),
             BakeError::NoMaps => f.write_str("no map was asked for"),
             BakeError::Twice(map) => write!(f, "the map `{}` was asked for twice", map.name()),
-            BakeError::Animation(Loop { frames, cells }) => {
+            BakeError::Animation(Loop { frames, cells, .. }) => {
                 write!(f, "{frames} frames over {cells} noise cells of time; both are from 1 to {}", Bake::MAX_FRAMES)
             }
         }
@@ -99,8 +113,12 @@ pub struct Bake {
     texture: Texture,
     settings: Settings,
     extent: [u32; 2],
+    /// The width of the surface in units of the texture.
+    tile: f64,
     /// The width of the surface in noise cells.
     cells: f64,
+    /// Of a mesh.
+    layout: Option<Layout>,
     field: Field,
 }
 
@@ -136,6 +154,9 @@ pub struct MapArray {
     pub values: Vec<f32>,
 }
 
+/// The largest pixel that is of any use, in noise cells.
+const COARSEST: f64 = 0.5;
+
 /// Rows that are worked on between two looks at the observer: enough for many threads.
 const BAND: u32 = 64;
 
@@ -161,26 +182,32 @@ impl Bake {
             return Err(BakeError::Twice(map));
         }
         let within = |number: u32| (1..=Self::MAX_FRAMES).contains(&number);
-        if let Some(animation) = settings.animation.filter(|a| !within(a.frames) || !within(a.cells)) {
+        if let Some(animation) =
+            settings.animation.filter(|a| !within(a.frames) || !within(a.cells) || a.first > Self::MAX_FRAMES)
+        {
             return Err(BakeError::Animation(animation));
         }
-        let tile = settings.tile.unwrap_or(texture.finish().tile);
+        let tile = settings.tile.or(settings.surface.own_width()).unwrap_or(texture.finish().tile);
         if !(tile > 0.0 && tile.is_finite()) {
             return Err(BakeError::Tile(tile));
         }
         let extent = settings.surface.extent(settings.size);
         let wanted = tile * texture.cells_per_unit();
         let cells = if settings.surface.tiles() { wanted.round().max(1.0) } else { wanted };
-        let most = (f64::from(settings.size) / 2.0).max(1.0).min(f64::from(Noise::LONGEST_PERIOD));
-        if cells > most {
+        let pixel = settings.surface.pixel(extent);
+        let most = COARSEST / pixel;
+        if cells > most.max(1.0) {
             return Err(BakeError::TooFine { cells, most });
         }
+        let layout = match &settings.surface {
+            Surface::Mesh(model) => Some(Layout::new(model, extent).ok_or(BakeError::NoLayout)?),
+            _ => None,
+        };
         let side = if settings.surface.tiles() { cells as u32 } else { 0 };
         let time = settings.animation.map_or(0, |animation| animation.cells);
         let repeating = texture.in_cells([side, side, 0, time]).expect("the periods are within what a noise can have");
-        let pixel = cells / f64::from(extent[0]);
-        let field = Field::new(&repeating, pixel);
-        Ok(Bake { texture, settings, extent, cells, field })
+        let field = Field::new(&repeating, cells * pixel);
+        Ok(Bake { texture, settings, extent, tile, cells, layout, field })
     }
 
     /// Pixels per row of each map.
@@ -203,14 +230,19 @@ impl Bake {
         &self.settings
     }
 
+    /// How many bands of the material's own (marble's) lie along the width of the surface: a whole number where it repeats.
+    pub fn bands_across(&self) -> Option<f64> {
+        self.shown().bands(self.cells)
+    }
+
     /// How many frames there are: 1 without an animation.
     pub fn frames(&self) -> u32 {
         self.settings.animation.map_or(1, |animation| animation.frames)
     }
 
-    /// How many units of the texture a map shows along its width.
+    /// The width of the surface in units of the texture.
     pub fn tile(&self) -> f64 {
-        self.settings.tile.unwrap_or(self.texture.finish().tile)
+        self.tile
     }
 
     /// The noise cells along the width of the surface: a whole number where it repeats.
@@ -227,11 +259,11 @@ impl Bake {
     /// The point of the material, in noise cells, at the centre of a pixel; those outside of a map that repeats are in its
     /// next tile.
     pub fn point(&self, x: i64, y: i64) -> [f64; 3] {
-        self.frame(x, y).point
+        self.frame(x, y).point.to_array()
     }
 
     fn frame(&self, x: i64, y: i64) -> Frame {
-        self.settings.surface.frame(x, y, self.extent, self.cells)
+        self.settings.surface.frame([x, y], self.extent, self.cells, self.layout.as_ref())
     }
 
     /// The lowest and the highest point of the surface in all frames, in units of the texture: what 0 and 1 of the height map
@@ -277,7 +309,7 @@ impl Bake {
 
     /// The time of a frame in cells, if there is any.
     fn time(&self, frame: u32) -> Option<f32> {
-        let Loop { frames, cells } = self.settings.animation?;
+        let Loop { frames, cells, .. } = self.settings.animation?;
         Some((f64::from(cells) * f64::from(frame % frames) / f64::from(frames)) as f32)
     }
 

@@ -1,21 +1,21 @@
 //! From places in the material to the numbers of the maps.
 
+use glam::DVec3;
 use jaspe_noise::math;
 use jaspe_scene::{srgb_decode, srgb_encode};
 use jaspe_texture::{Reliefs, Texture};
 
 use crate::map::{Map, NormalConvention};
-use crate::surface::{Frame, Vector};
+use crate::surface::Frame;
 
 /// Samples along each edge of a pixel for what is averaged over it: wood has sharp rings.
 const SAMPLES: usize = 3;
 
-/// Directions in which occlusion looks for a horizon. (A number without a divisor of 4: no direction runs along the lattice
-/// but the first.)
-const DIRECTIONS: usize = 9;
+/// Directions in which occlusion looks for a horizon. (An odd number: only one runs along the lattice.)
+const DIRECTIONS: usize = 7;
 
 /// Distances at which it looks, from two pixels to a noise cell.
-const DISTANCES: usize = 6;
+const DISTANCES: usize = 5;
 
 /// The material as pixels of a certain size can show it.
 pub(crate) struct Field {
@@ -37,8 +37,8 @@ impl<const D: usize> Columns<D> {
         Columns(std::array::from_fn(|axis| vec![if axis == 3 { time } else { 0.0 }; count]))
     }
 
-    fn set(&mut self, i: usize, point: Vector) {
-        for (axis, coordinate) in self.0.iter_mut().zip(point) {
+    fn set(&mut self, i: usize, point: DVec3) {
+        for (axis, coordinate) in self.0.iter_mut().zip(point.to_array()) {
             axis[i] = coordinate as f32;
         }
     }
@@ -46,11 +46,6 @@ impl<const D: usize> Columns<D> {
     fn slices(&self) -> [&[f32]; D] {
         self.0.each_ref().map(Vec::as_slice)
     }
-}
-
-/// a + s · b.
-fn ahead(a: Vector, b: Vector, s: f64) -> Vector {
-    std::array::from_fn(|axis| a[axis] + s * b[axis])
 }
 
 /// How many octaves pixels of this size (in cells) can show: the cells of the last one are two and a half pixels wide.
@@ -143,9 +138,9 @@ impl Field {
         let offset = |k: usize| (k as f64 + 0.5) / SAMPLES as f64 - 0.5;
         for row in 0..SAMPLES {
             for (i, frame) in frames.iter().enumerate() {
-                let start = ahead(frame.point, frame.up, offset(row));
+                let start = frame.point + offset(row) * frame.up;
                 for column in 0..SAMPLES {
-                    points.set(SAMPLES * i + column, ahead(start, frame.right, offset(column)));
+                    points.set(SAMPLES * i + column, start + offset(column) * frame.right);
                 }
             }
             self.fine.evaluate(points.slices(), &mut coefficients);
@@ -181,8 +176,8 @@ impl Field {
             let relief = Relief::<D>::new(texture, frames, time);
             for (which, [along, across]) in self.directions.iter().enumerate() {
                 for (i, frame) in frames.iter().enumerate() {
-                    let point = ahead(frame.point, frame.tangent, distance * along);
-                    points.set(i, ahead(point, frame.bitangent, distance * across));
+                    let way = *along * frame.tangent + *across * frame.bitangent;
+                    points.set(i, frame.point + *distance * way);
                 }
                 texture.heights(points.slices(), &mut heights);
                 for (i, frame) in frames.iter().enumerate() {

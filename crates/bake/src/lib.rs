@@ -29,10 +29,22 @@
 #![forbid(unsafe_code)]
 
 mod bake;
+mod encode;
 mod field;
+mod gltf;
+mod layout;
+mod manifest;
 mod map;
+mod materialx;
+mod model;
+mod preview;
+mod set;
 mod surface;
 
 pub use bake::{Arrays, Bake, BakeError, Band, Loop, MapArray, Settings};
+pub use encode::MapFormat;
 pub use map::{ColorSpace, Map, MapDeclaration, NormalConvention};
+pub use model::{Model, ModelError};
+pub use preview::preview;
+pub use set::{Preview, SetError, SetFolder, SetOptions, Written, write_set};
 pub use surface::Surface;

@@ -187,7 +187,7 @@ fn maps_do_not_depend_on_threads() {
 fn animations_return_to_their_beginning() {
     for name in ["fire", "water"] {
         let texture = Texture::build(name, &[]).unwrap();
-        let animation = Some(Loop { frames: 24, cells: 2 });
+        let animation = Some(Loop { frames: 24, first: 0, cells: 2 });
         let maps = vec![Map::Color, Map::Height];
         let bake = Bake::new(texture, Settings { animation, maps, ..all_maps(48) }).unwrap();
         let frames: Vec<_> = (0..=24).map(|frame| bake.arrays(frame, &()).unwrap()).collect();
@@ -230,6 +230,6 @@ fn wrong_settings_are_told() {
         error(Settings { tile: Some(100.0), ..all_maps(512) }).to_string(),
         "5000 noise cells along a side, where pixels can show 256"
     );
-    let animation = Some(Loop { frames: 0, cells: 1 });
+    let animation = Some(Loop { frames: 0, first: 0, cells: 1 });
     assert!(matches!(error(Settings { animation, ..all_maps(8) }), BakeError::Animation(_)));
 }

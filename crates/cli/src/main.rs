@@ -8,6 +8,7 @@ mod command;
 mod failure;
 mod flip;
 mod interrupt;
+mod material;
 mod measure;
 mod progress;
 mod report;
@@ -34,6 +35,7 @@ Examples:
   jaspe convert old.sc -o new.sc             the same scene, tidy and in one file
   jaspe textures marble                      the parameters of marble
   jaspe texture wood -o wood.png             one texture on a plane
+  jaspe bake stone -o stone/                 maps that tile, for engines and modellers
   jaspe noise improved 0.5 0.25 0.5          prints -0.262939453125
   jaspe compare before.png after.png         how far apart two pictures are
 
@@ -51,6 +53,7 @@ enum Command {
     Convert(command::convert::Convert),
     Textures(command::textures::Textures),
     Texture(command::texture::Texture),
+    Bake(command::bake::Bake),
     Noise(command::noise::Noise),
     Compare(command::compare::Compare),
     Bench(command::bench::Bench),
@@ -72,6 +75,7 @@ fn main() -> ExitCode {
         Command::Convert(convert) => convert.run(),
         Command::Textures(textures) => textures.run(),
         Command::Texture(texture) => texture.run(),
+        Command::Bake(bake) => bake.run(),
         Command::Noise(noise) => noise.run(),
         Command::Compare(compare) => compare.run(),
         Command::Bench(bench) => bench.run(),

@@ -28,16 +28,21 @@ pub enum Progress {
     Silent,
     /// A bar with the time left.
     Bar(ProgressBar),
-    /// A line every ten per cent; holds the tenths that were printed.
-    Lines(AtomicU64),
+    /// A line every ten per cent.
+    Lines {
+        /// What is done (`rendering`).
+        work: &'static str,
+        /// The tenths that were printed.
+        printed: AtomicU64,
+    },
 }
 
 impl Progress {
-    /// The kind that fits the terminal.
-    pub fn new(when: When) -> Self {
+    /// The kind that fits the terminal, for a work (`rendering`).
+    pub fn new(work: &'static str, when: When) -> Self {
         match (when, std::io::stderr().is_terminal()) {
-            (When::Auto | When::On, true) => Progress::Bar(bar()),
-            (When::On, false) => Progress::Lines(AtomicU64::new(0)),
+            (When::Auto | When::On, true) => Progress::Bar(bar(work)),
+            (When::On, false) => Progress::Lines { work, printed: AtomicU64::new(0) },
             (When::Off, _) | (When::Auto, false) => Progress::Silent,
         }
     }
@@ -50,11 +55,13 @@ impl Progress {
     }
 }
 
-fn bar() -> ProgressBar {
-    let template = "rendering {bar:32} {percent:>3} %  {elapsed} gone, {eta} left";
+fn bar(work: &str) -> ProgressBar {
+    let template = "{msg} {bar:32} {percent:>3} %  {elapsed} gone, {eta} left";
     let style =
         ProgressStyle::with_template(template).expect("the template is well formed").progress_chars("█▉▊▋▌▍▎▏ ");
-    let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr_with_hz(15)).with_style(style);
+    let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr_with_hz(15))
+        .with_style(style)
+        .with_message(work.to_owned());
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
 }
@@ -67,11 +74,11 @@ impl Observer for Progress {
                 bar.set_length(total);
                 bar.set_position(done);
             }
-            Progress::Lines(printed) => {
+            Progress::Lines { work, printed } => {
                 let tenths = (10 * done).checked_div(total).unwrap_or(0).min(10);
                 if printed.fetch_max(tenths, Ordering::Relaxed) < tenths {
                     // Nobody reading progress is no reason to stop.
-                    let _ = writeln!(std::io::stderr(), "rendering: {} %", 10 * tenths);
+                    let _ = writeln!(std::io::stderr(), "{work}: {} %", 10 * tenths);
                 }
             }
         }

@@ -179,7 +179,7 @@ impl Texture {
             tile,
             maps: maps.map_or(Ok(defaults.maps), |maps| bake::maps_called(&maps))?,
             normal: bake::convention_called(normal)?,
-            animation: frames.map(|frames| Loop { frames, cells }),
+            animation: frames.map(|frames| Loop { frames, first: 0, cells }),
             ..Settings::default()
         };
         bake::bake(py, self.material(), settings, frame, progress)

@@ -64,6 +64,7 @@ pub use develop::{Alpha, Depth, Image, Samples, develop};
 pub use encode::{EncodeError, Format, UnknownFormat, encode};
 pub use film::{Encoding, Film, Pixel};
 pub use jaspe_scene::{srgb_decode, srgb_encode};
+pub use mesh_file::{MeshFile, read_mesh};
 pub use options::{Cancelled, CompileOptions, Look, Observer, RenderOptions, Stats};
 pub use picture::{DecodeError, Picture, PicturePixels};
 pub use swatch::swatch;

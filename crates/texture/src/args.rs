@@ -74,6 +74,11 @@ impl Args {
         written.or_else(|| self.declaration.parameter(name).map(|parameter| parameter.default)).unwrap_or(Value::Auto)
     }
 
+    /// Every parameter with its value, in the order of the declaration.
+    pub(crate) fn all(&self) -> impl Iterator<Item = (&'static str, Value)> {
+        self.declaration.parameters.iter().map(|parameter| (parameter.name, self.value(parameter.name)))
+    }
+
     /// A whole number; 0 if the parameter is of another kind.
     pub(crate) fn int(&self, name: &str) -> i64 {
         if let Value::Int(value) = self.value(name) { value } else { 0 }

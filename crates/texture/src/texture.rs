@@ -1,5 +1,7 @@
 //! A texture ready to evaluate, and the colours that its coefficient mixes.
 
+use std::sync::Arc;
+
 use jaspe_noise::simd::{self, Kernel, Level};
 use jaspe_noise::{Noise, Real, Sum};
 
@@ -11,6 +13,7 @@ use crate::space::{Frequencies, Space};
 /// A procedural material with its arguments. Immutable; cheap to clone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
+    arguments: Arc<[(&'static str, Value)]>,
     pub(crate) material: Material,
     pub(crate) sum: Sum,
     initial: [f32; 3],
@@ -42,6 +45,7 @@ impl Texture {
         let args = Args::check(Self::ALL[index], args)?;
         let noise = Noise::new(args.basis(), args.int("seed") as u64);
         Ok(Texture {
+            arguments: args.all().collect(),
             material: Material::build(index, &args),
             sum: Sum::new(noise, args.combine(), args.int("depth") as u32),
             initial: args.color("diffuse_initial"),
@@ -58,6 +62,11 @@ impl Texture {
     /// What this material declares.
     pub fn declaration(&self) -> &'static Declaration {
         self.material.declaration()
+    }
+
+    /// Every parameter with its value, written or default, in the order of the declaration.
+    pub fn arguments(&self) -> &[(&'static str, Value)] {
+        &self.arguments
     }
 
     /// The space that points are given in: the parameter `space`, or else local.

@@ -1,5 +1,6 @@
 //! The commands, one file each: their arguments, help texts and what they do.
 
+pub mod bake;
 pub mod bench;
 pub mod check;
 pub mod compare;

@@ -201,7 +201,7 @@ impl Render {
     fn render(&self, scene: &CompiledScene) -> Result<(Film, Stats), Failure> {
         let options =
             RenderOptions { threads: self.threads.map(|threads| threads as usize), seed: self.seed, crop: self.crop };
-        let progress = Progress::new(if self.quiet { When::Off } else { self.progress });
+        let progress = Progress::new("rendering", if self.quiet { When::Off } else { self.progress });
         let result = render(scene, &options, &progress);
         progress.finish();
         result.map_err(|_| {

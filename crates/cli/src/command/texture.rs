@@ -6,13 +6,12 @@ use std::time::Instant;
 use clap::Args;
 use jaspe_edge::file::Output;
 use jaspe_render::swatch;
-use jaspe_texture::declare::Value;
-use jaspe_texture::{BuildError, Texture as Material};
 
 use crate::Outcome;
 use crate::arguments::{Assignment, assignment, size};
 use crate::command::textures::names;
-use crate::failure::{Failure, nearest};
+use crate::failure::Failure;
+use crate::material;
 use crate::show::{duration, size as file_size};
 use crate::terminal;
 
@@ -66,7 +65,7 @@ impl Texture {
     /// Draws and writes.
     pub fn run(self) -> Result<Outcome, Failure> {
         let started = Instant::now();
-        let material = self.build()?;
+        let material = material::build(&self.name, &self.set)?;
         let output = Output::new(&self.output, None)?;
         let film = swatch(&material, self.size, self.scale);
         let byte_count = output.write(&film)?;
@@ -78,30 +77,5 @@ impl Texture {
             eprintln!("{}: {width}x{height}, {size}, in {}", output.path().display(), duration(started.elapsed()));
         }
         Ok(Outcome::Done)
-    }
-
-    fn build(&self) -> Result<Material, Failure> {
-        let declaration = Material::ALL.iter().find(|declaration| declaration.name == self.name);
-        let declaration = declaration.expect("the parser accepts the names of materials only");
-        let mut arguments: Vec<(&str, Value)> = Vec::new();
-        for Assignment { key, value } in &self.set {
-            let parameter = declaration.parameter(key).ok_or_else(|| self.unknown(key, declaration.parameters))?;
-            let value = parameter.parse(value).map_err(|error| self.refused(&error))?;
-            arguments.push((parameter.name, value));
-        }
-        Material::build(&self.name, &arguments).map_err(|error| self.refused(&error))
-    }
-
-    fn unknown(&self, key: &str, parameters: &[jaspe_texture::declare::Parameter]) -> Failure {
-        let failure = Failure::new(format!("--set: `{}` has no parameter `{key}`", self.name));
-        match nearest(key, parameters.iter().map(|parameter| parameter.name.to_owned())) {
-            Some(name) => failure.hint(format!("did you mean `{name}`?")),
-            None => failure.hint(format!("`jaspe textures {}` lists its parameters", self.name)),
-        }
-    }
-
-    fn refused(&self, error: &BuildError) -> Failure {
-        let hint = format!("`jaspe textures {}` lists its parameters", self.name);
-        Failure::new(format!("--set: {error}")).hint(hint)
     }
 }

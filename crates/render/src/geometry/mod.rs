@@ -110,7 +110,7 @@ pub(crate) enum PerVertex<T> {
 
 impl<T: Copy> PerVertex<T> {
     /// The three values of one triangle.
-    fn triangle(&self, mesh: &MeshShape, index: usize) -> Option<[T; 3]> {
+    pub fn triangle(&self, mesh: &MeshShape, index: usize) -> Option<[T; 3]> {
         match self {
             PerVertex::None => None,
             PerVertex::Vertex(values) => Some(mesh.triangles[index].map(|i| values[i as usize])),

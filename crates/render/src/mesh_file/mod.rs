@@ -36,6 +36,29 @@ pub(crate) fn read(bytes: &[u8], path: &Path) -> Result<MeshShape, String> {
     Ok(mesh)
 }
 
+/// A mesh as its file has it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MeshFile {
+    /// Points: x, y, z.
+    pub points: Vec<[f32; 3]>,
+    /// Each triangle's points, as indices from 0.
+    pub triangles: Vec<[u32; 3]>,
+    /// Each triangle's texture coordinates u and v, corner by corner; none at all where the file has none.
+    pub uvs: Vec<[[f32; 2]; 3]>,
+}
+
+/// Reads a mesh file (OBJ, STL or RA3), by the extension of its name. Its indices are valid, and its points finite.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn read_mesh(bytes: &[u8], path: &Path) -> Result<MeshFile, String> {
+    let mesh = read(bytes, path)?;
+    let uvs = (0..mesh.triangles.len()).map_while(|triangle| mesh.uvs.triangle(&mesh, triangle));
+    let uvs = uvs.map(|corners| corners.map(|uv| uv.to_array())).collect();
+    let points = mesh.points.iter().map(|point| point.to_array()).collect();
+    Ok(MeshFile { points, uvs, triangles: mesh.triangles })
+}
+
 /// The four bytes at `at`, if there are so many.
 fn four(bytes: &[u8], at: usize) -> Option<[u8; 4]> {
     bytes.get(at..at.checked_add(4)?)?.try_into().ok()
