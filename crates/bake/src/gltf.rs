@@ -21,7 +21,7 @@ pub(crate) fn files(bake: &Bake, options: &SetOptions) -> Vec<(String, Vec<u8>)>
     let model = bake.settings().surface.model(bake.tile());
     let (buffer, views, accessors) = buffer(&model, bake.settings().normal);
     let binary = format!("{name}.bin");
-    let (material, textures) = material(bake, options);
+    let (material, textures) = material(bake);
     let mut json = json!({
         "asset": { "version": "2.0", "generator": concat!("jaspe ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
@@ -64,8 +64,7 @@ pub(crate) fn files(bake: &Bake, options: &SetOptions) -> Vec<(String, Vec<u8>)>
 }
 
 /// The material, and the maps that its textures show, in their order.
-fn material(bake: &Bake, options: &SetOptions) -> (Json, Vec<Map>) {
-    let _ = options;
+fn material(bake: &Bake) -> (Json, Vec<Map>) {
     let mut textures = Vec::new();
     let mut material = json!({
         "name": bake.texture().declaration().name,

@@ -29,8 +29,10 @@
 #![forbid(unsafe_code)]
 
 mod bake;
+mod canvas;
 mod encode;
 mod field;
+mod gallery;
 mod gltf;
 mod layout;
 mod manifest;
@@ -43,6 +45,7 @@ mod surface;
 
 pub use bake::{Arrays, Bake, BakeError, Band, Loop, MapArray, Settings};
 pub use encode::MapFormat;
+pub use gallery::write_gallery;
 pub use map::{ColorSpace, Map, MapDeclaration, NormalConvention};
 pub use model::{Model, ModelError};
 pub use preview::preview;

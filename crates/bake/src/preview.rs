@@ -21,18 +21,13 @@ const MAPS: u32 = 1024;
 /// # Errors
 /// [`Cancelled`] when the observer asked for it.
 pub fn preview(bake: &Bake, [width, height]: [u32; 2], observer: &dyn Observer) -> Result<Film, Cancelled> {
-    let maps = vec![Map::Color, Map::Normal, Map::Roughness];
-    let settings = Settings {
-        maps,
-        normal: NormalConvention::OpenGl,
-        size: bake.settings().size.min(MAPS),
-        ..bake.settings().clone()
-    };
-    let small = Bake::new(bake.texture().clone(), settings).or_else(|_| {
-        // (Too fine for so few pixels.)
-        let settings = Settings { maps: vec![Map::Color, Map::Normal, Map::Roughness], ..bake.settings().clone() };
+    let with = |size: u32| {
+        let maps = vec![Map::Color, Map::Normal, Map::Roughness];
+        let settings = Settings { size, maps, normal: NormalConvention::OpenGl, ..bake.settings().clone() };
         Bake::new(bake.texture().clone(), settings)
-    });
+    };
+    // (Smaller maps may be too coarse for the material.)
+    let small = with(bake.settings().size.min(MAPS)).or_else(|_| with(bake.settings().size));
     let small = small.expect("what could be baked can be baked with these maps");
     let arrays = small.arrays(0, &Silent(observer))?;
     let loader = MemoryLoader::default()
@@ -47,7 +42,7 @@ pub fn preview(bake: &Bake, [width, height]: [u32; 2], observer: &dyn Observer) 
 }
 
 /// Stops as another observer does, and tells it nothing.
-struct Silent<'a>(&'a dyn Observer);
+pub(crate) struct Silent<'a>(pub &'a dyn Observer);
 
 impl Observer for Silent<'_> {
     fn cancelled(&self) -> bool {
@@ -86,14 +81,14 @@ fn scene(bake: &Bake, roughness: f64, [width, height]: [u32; 2]) -> String {
         // GGX's α is the square of the roughness, and Ward's width is close to it.
         let spread = (roughness * roughness).clamp(0.05, 0.6);
         format!(
-            "shader {{ name material type ward texture color.png spec 0.04 0.04 0.04 rough {spread} {spread} samples 4 }}"
+            "shader {{ name material type ward texture color.png spec 0.04 0.04 0.04 rough {spread} {spread} samples 1 }}"
         )
     };
     let mut text = format!(
         "image {{ resolution {width} {height} aa 1 2 filter mitchell }}\n\
          trace-depths {{ diff 1 refl 3 refr 2 }}\n\
          camera {{ type pinhole eye 0 -8.2 2.6 target 0.1 0 1.12 up 0 0 1 fov 38 aspect {} }}\n\
-         light {{ type sunsky up 0 0 1 east 0 1 0 sundir -0.65 -0.7 0.85 turbidity 3 samples 48 }}\n\
+         light {{ type sunsky up 0 0 1 east 0 1 0 sundir -0.65 -0.7 0.85 turbidity 3 samples 10 }}\n\
          modifier {{ name relief type normalmap texture normal.png }}\n\
          shader {{ name floor type diffuse diff {{ \"sRGB nonlinear\" 0.58 0.56 0.53 }} }}\n\
          object {{ shader floor type plane p 0 0 0 n 0 0 1 }}\n{shader}\n",

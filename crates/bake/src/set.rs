@@ -113,6 +113,8 @@ pub struct SetFolder {
 
 /// The file that says what was baked.
 pub(crate) const MANIFEST: &str = "material.json";
+/// The file that lists a gallery.
+pub(crate) const GALLERY: &str = "gallery.json";
 /// The rendered picture of a set.
 const PREVIEW: &str = "preview.png";
 
@@ -162,7 +164,7 @@ impl SetFolder {
     }
 
     /// Puts the folder in its place.
-    fn complete(self) -> Result<Written, SetError> {
+    pub(crate) fn complete(self) -> Result<Written, SetError> {
         let failed = |error| SetError::Write { path: self.target.clone(), error };
         let mut files = Vec::new();
         for entry in fs::read_dir(self.folder.path()).map_err(failed)? {
@@ -191,15 +193,19 @@ impl SetFolder {
     }
 }
 
-/// A folder may be replaced if it is empty, or if its `material.json` names all that is in it.
+/// A folder may be replaced if it is empty, or if the list that was written with it names all that is in it.
 fn check_replaceable(folder: &Path, entries: fs::ReadDir) -> Result<(), SetError> {
-    let manifest = fs::read(folder.join(MANIFEST)).unwrap_or_default();
-    let manifest: serde_json::Value = serde_json::from_slice(&manifest).unwrap_or_default();
-    let listed = manifest["files"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let mut listed = Vec::new();
+    for list in [MANIFEST, GALLERY] {
+        let list = fs::read(folder.join(list)).unwrap_or_default();
+        let list: serde_json::Value = serde_json::from_slice(&list).unwrap_or_default();
+        listed
+            .extend(list["files"].as_array().into_iter().flatten().filter_map(|file| file.as_str().map(str::to_owned)));
+    }
     for entry in entries {
         let entry = entry.map_err(|error| SetError::Write { path: folder.to_owned(), error })?;
         let file = entry.file_name().to_string_lossy().into_owned();
-        if !listed.iter().any(|name| name.as_str() == Some(&file)) {
+        if !listed.contains(&file) {
             return Err(SetError::Occupied { folder: folder.to_owned(), file });
         }
     }
@@ -216,11 +222,11 @@ pub(crate) fn file_name(bake: &Bake, options: &SetOptions, map: Map, frame: u32)
 }
 
 /// A part of a set's work, as a part of the whole for those who wait.
-struct Work<'a> {
-    observer: &'a dyn Observer,
-    before: u64,
-    most: u64,
-    total: u64,
+pub(crate) struct Work<'a> {
+    pub observer: &'a dyn Observer,
+    pub before: u64,
+    pub most: u64,
+    pub total: u64,
 }
 
 /// A row of maps takes so many times as long as one of heights.

@@ -76,7 +76,7 @@ fn what_cannot_be_baked_is_told_with_advice() {
         (&["bake", "stone", "-o", "missing/x"], "mkdir -p missing"),
         (&["bake", "stone", "-o", "notes.txt/x"], "cannot write `notes.txt/x`"),
         (&["bake", "stone", "-o", "notes.txt"], "cannot write"),
-        (&["bake", "stone", "-o", "mine", "--size", "8"], "holds `notes.txt`"),
+        (&["bake", "wood", "-o", "mine", "--size", "8"], "holds `notes.txt`"),
     ] {
         let run = run_in(here.path(), arguments);
         assert!(run.status == 2 && run.stderr.contains(part), "{arguments:?}: {}", run.stderr);
@@ -111,4 +111,13 @@ fn sequences_and_previews_are_written() {
     assert_eq!((run.status, run.stderr.as_str()), (0, ""));
     let files = names(&here.path().join("set"));
     assert_eq!(files[..4], ["color.0002.png", "color.0003.png", "color.0004.png", "emission.0002.png"]);
+}
+
+#[test]
+fn the_gallery_refuses_a_folder_of_other_things() {
+    let here = folder();
+    fs::write(here.path().join("notes.txt"), "").expect("written");
+    let run = run_in(here.path(), &["gallery", "-o", "."]);
+    assert!(run.status == 2 && run.stderr.contains("holds `notes.txt`"), "{}", run.stderr);
+    assert_eq!(names(here.path()), ["notes.txt"]);
 }

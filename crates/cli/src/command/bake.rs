@@ -10,6 +10,7 @@ use jaspe_bake::{
     BakeError, Loop, Map, MapFormat, Model, NormalConvention, Preview, SetError, SetFolder, SetOptions, Settings,
     Surface, Written, write_set,
 };
+use jaspe_edge::message::count;
 use jaspe_edge::plain;
 
 use crate::Outcome;
@@ -17,7 +18,7 @@ use crate::arguments::{Assignment, assignment};
 use crate::command::textures::names;
 use crate::failure::Failure;
 use crate::progress::{Progress, When};
-use crate::show::{count, duration, size as file_size};
+use crate::show::{duration, size as file_size};
 use crate::{interrupt, material};
 
 /// Bake a material into maps for game engines, modellers and pipelines.
@@ -60,7 +61,7 @@ pub struct Bake {
 
     /// The width of the surface in units of the texture [default: what shows the material well on a plane; 2 for a sphere,
     /// cube or cylinder; a mesh's own width]
-    #[arg(long, value_name = "T", value_parser = positive)]
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     tile: Option<f64>,
 
     /// What the maps unroll
@@ -155,7 +156,7 @@ impl Bake {
         let options = self.options()?;
         let bake = self.bake()?;
         interrupt::listen();
-        let folder = SetFolder::new(&self.output).map_err(|error| self.unwritable(error))?;
+        let folder = SetFolder::new(&self.output).map_err(|error| unwritable(&self.output, error))?;
         let progress = Progress::new("baking", if self.quiet { When::Off } else { self.progress });
         let work = || write_set(&bake, &options, folder, &progress);
         let written = match self.threads {
@@ -166,7 +167,7 @@ impl Bake {
             }
         };
         progress.finish();
-        let written = written.map_err(|error| self.unwritable(error))?;
+        let written = written.map_err(|error| unwritable(&self.output, error))?;
         if !self.quiet {
             self.tell(&bake, &written, started);
         }
@@ -249,27 +250,28 @@ impl Bake {
         }
         Ok(options)
     }
+}
 
-    fn unwritable(&self, error: SetError) -> Failure {
-        match error {
-            SetError::Cancelled => {
-                eprintln!("stopped; nothing was written");
-                Failure::Interrupted
-            }
-            SetError::Write { path, error } => {
-                let failure = Failure::new(format!("cannot write `{}`: {}", path.display(), plain(&error)));
-                match (error.kind(), missing_parent(&path, &self.output)) {
-                    (std::io::ErrorKind::NotFound, Some(parent)) => {
-                        failure.hint(format!("create its folder first: mkdir -p {}", parent.display()))
-                    }
-                    _ => failure.hint("choose another place with -o FOLDER; nothing was left behind"),
+/// Why a set, or a gallery, could not be written, and what to do about it.
+pub fn unwritable(output: &Path, error: SetError) -> Failure {
+    match error {
+        SetError::Cancelled => {
+            eprintln!("stopped; nothing was written");
+            Failure::Interrupted
+        }
+        SetError::Write { path, error } => {
+            let failure = Failure::new(format!("cannot write `{}`: {}", path.display(), plain(&error)));
+            match (error.kind(), missing_parent(&path, output)) {
+                (std::io::ErrorKind::NotFound, Some(parent)) => {
+                    failure.hint(format!("create its folder first: mkdir -p {}", parent.display()))
                 }
+                _ => failure.hint("choose another place with -o FOLDER; nothing was left behind"),
             }
-            SetError::Occupied { .. } => Failure::new(error.to_string())
-                .hint("a set replaces its folder: choose a new one, or one that holds only a set"),
-            SetError::TooLarge { .. } => {
-                Failure::new(error.to_string()).hint("choose another --format or a smaller --size")
-            }
+        }
+        SetError::Occupied { .. } => Failure::new(error.to_string())
+            .hint("what is written replaces its folder: choose a new one, or one that was written so"),
+        SetError::TooLarge { .. } => {
+            Failure::new(error.to_string()).hint("choose another --format or a smaller --size")
         }
     }
 }

@@ -5,6 +5,7 @@ pub mod bench;
 pub mod check;
 pub mod compare;
 pub mod convert;
+pub mod gallery;
 pub mod noise;
 pub mod render;
 pub mod texture;

@@ -22,7 +22,7 @@ impl Kind for Organic {
     // The figures show spheres of the radius 1.5, with one cell per unit of the scene.
     const FREQUENCIES: Frequencies = Frequencies { local: 1.5, world: 1.0, uv: 5.0 };
     /// Swollen, velvety blotches; the web between them lies low and is slightly damp.
-    const FINISH: Finish = Finish { relief: 0.25, roughness: [0.6, 0.95], emission: 0.0, tile: 4.0 };
+    const FINISH: Finish = Finish { relief: 0.2, roughness: [0.6, 0.95], emission: 0.0, tile: 4.0 };
 
     fn build(_: &Args) -> Self {
         Organic

@@ -25,7 +25,7 @@ impl Kind for Wood {
     /// The rings gather around the lattice point at the origin, where the noise of all octaves vanishes.
     const OFFSET: f64 = 0.0;
     /// Sawn and oiled: the light wood of spring is open, the dark of autumn is dense, takes a polish and stands out.
-    const FINISH: Finish = Finish { relief: 0.004, roughness: [0.65, 0.35], emission: 0.0, tile: 7.0 };
+    const FINISH: Finish = Finish { relief: 0.003, roughness: [0.65, 0.35], emission: 0.0, tile: 7.0 };
 
     fn build(_: &Args) -> Self {
         Wood
