@@ -7,7 +7,7 @@ use crate::basis::cellular::{Cellular, Feature, Metric};
 use crate::basis::{Basis, Period, Tables, cellular, classic, improved, lattice, simplex, value, white};
 use crate::dispatch::{Evaluate, OverSlices, over_slices};
 use crate::number::{Dual, Real};
-use crate::simd::{self, FEW, Level, Terms};
+use crate::simd::{self, AtPoint, FEW, Level, Terms};
 
 /// A noise: points in, numbers out. Cheap to clone; immutable.
 #[derive(Debug, Clone)]
@@ -19,6 +19,8 @@ pub struct Noise {
     tables: Arc<Tables>,
     /// Whether this is the noise that the kernels made by hand are for.
     has_kernel: bool,
+    /// The one for single points, if the level in use has it.
+    at_point: Option<AtPoint>,
 }
 
 /// Why [`Noise::with_period`] refused.
@@ -50,14 +52,23 @@ impl Noise {
 
     /// The noise of this basis and seed. Seed 0 has the published permutation, other seeds a shuffle of it.
     pub fn new(basis: Basis, seed: u64) -> Self {
-        Noise {
+        let noise = Noise {
             basis,
             seed,
             period: [0.0; 4],
             cellular: Cellular::default(),
             tables: Arc::new(Tables::new(seed)),
-            has_kernel: basis == Basis::Improved,
-        }
+            has_kernel: false,
+            at_point: None,
+        };
+        noise.with_kernels()
+    }
+
+    /// With the kernels for its basis and period.
+    fn with_kernels(mut self) -> Self {
+        self.has_kernel = self.basis == Basis::Improved && self.period == [0.0; 4];
+        self.at_point = if self.has_kernel { AtPoint::new(simd::level()) } else { None };
+        self
     }
 
     /// The same noise, repeating after so many cells along each axis that is named, from x on: the value at p and at p + period are the same
@@ -76,8 +87,7 @@ impl Noise {
         for (cells, wanted) in self.period.iter_mut().zip(period) {
             *cells = f64::from(wanted);
         }
-        self.has_kernel = self.basis == Basis::Improved && self.period == [0.0; 4];
-        Ok(self)
+        Ok(self.with_kernels())
     }
 
     /// The same noise with these parameters of [`Basis::Cellular`]; the other bases have no use for them. The jitter is
@@ -200,12 +210,10 @@ impl Noise {
     /// The value at one point in single precision, with the machine's vector instructions.
     #[inline]
     pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
-        let kernel = if D == 3 && self.has_kernel {
-            simd::improved_at(&self.tables, [point[0], point[1], point[D - 1]])
-        } else {
-            None
-        };
-        kernel.unwrap_or_else(|| self.value_at(&point))
+        match self.at_point {
+            Some(kernel) if D == 3 => kernel.noise(&self.tables, [point[0], point[1], point[D - 1]]),
+            _ => self.value_at(&point),
+        }
     }
 
     /// The value at one point in single precision, by the generic evaluation.
@@ -234,13 +242,16 @@ impl Noise {
         }
     }
 
-    /// The sum at one point by the kernel made by hand, if there is one, or with its octaves in the lanes of vectors, if
-    /// there are several (and no period, which would differ from octave to octave).
+    /// The kernel made by hand for single points in space, if the level in use has one for this noise.
+    #[inline(always)]
+    pub(crate) fn at_point(&self) -> Option<AtPoint> {
+        self.at_point
+    }
+
+    /// The sum at one point with its octaves in the lanes of vectors, if there are several (and no period, which would
+    /// differ from octave to octave).
     pub(crate) fn sum_at<const D: usize>(&self, level: Level, terms: &Terms, point: [f32; D]) -> Option<f32> {
         let level = level.min(simd::machine_level());
-        if D == 3 && self.has_kernel && level >= Level::Avx2 {
-            return Some(simd::sum_improved_at(level, &self.tables, terms, [point[0], point[1], point[D - 1]]));
-        }
         if terms.octaves() < 2 || self.period != [0.0; 4] || level == Level::Scalar {
             return None;
         }

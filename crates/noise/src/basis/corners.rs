@@ -69,7 +69,7 @@ pub(super) fn hash_zero<R: Real, const D: usize>(tables: &Tables, hashes: &mut C
 }
 
 /// How far a point is between the corners: along each axis the curve from 0 to 1, and its slope.
-pub(super) struct Curve<R, const D: usize> {
+pub(crate) struct Curve<R, const D: usize> {
     pub at: [R; D],
     pub slope: [R; D],
 }

@@ -171,8 +171,27 @@ pub(crate) struct Terms<'a> {
     pub amplitudes: &'a [f32],
     /// The products of both, by which the gradient is multiplied.
     pub slopes: &'a [f32],
-    /// The frequencies and amplitudes once more, eight octaves at a time.
-    pub lanes: &'a [Lanes],
+}
+
+/// A sum over octaves, for the kernels that have them in lanes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct LaneTerms {
+    /// Whether each octave adds its absolute value.
+    pub absolute: bool,
+    /// How many octaves.
+    pub octaves: usize,
+    /// Eight at a time.
+    pub lanes: Vec<Lanes>,
+}
+
+impl LaneTerms {
+    /// Of these frequencies and amplitudes.
+    pub fn new(absolute: bool, frequencies: &[f32], amplitudes: &[f32]) -> LaneTerms {
+        let eight = |numbers: &[f32]| std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0));
+        let lanes = frequencies.chunks(8).zip(amplitudes.chunks(8));
+        let lanes = lanes.map(|(f, a)| Lanes { frequencies: eight(f), amplitudes: eight(a) }).collect();
+        LaneTerms { absolute, octaves: frequencies.len(), lanes }
+    }
 }
 
 /// Eight octaves, or fewer with zeros after them.
@@ -184,8 +203,7 @@ pub(crate) struct Lanes {
 
 impl Terms<'_> {
     /// The noise alone.
-    pub const ONE: Terms<'static> =
-        Terms { absolute: false, frequencies: &[1.0], amplitudes: &[1.0], slopes: &[1.0], lanes: &[] };
+    pub const ONE: Terms<'static> = Terms { absolute: false, frequencies: &[1.0], amplitudes: &[1.0], slopes: &[1.0] };
 
     /// Whether they are those of [`Terms::ONE`].
     #[inline(always)]
@@ -222,34 +240,50 @@ pub(crate) fn sum_improved<const N: usize>(
     }
 }
 
-/// The sum of improved noise at one point, with its octaves in the lanes. Same bits as the generic evaluation.
-///
-/// # Panics
-/// Where the machine has no AVX2.
-pub(crate) fn sum_improved_at(level: Level, tables: &Tables, terms: &Terms, [x, y, z]: [f32; 3]) -> f32 {
-    match level.min(machine_level()) {
-        // SAFETY: the machine has the instructions, `machine_level` says.
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx2 => unsafe { avx2::single::sum(tables, terms, x, y, z) },
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx512 => unsafe { avx512::single::sum(tables, terms, x, y, z) },
-        _ => unreachable!("without AVX2 there is no kernel"),
+/// Improved noise at one point, by the instructions of a level: the same bits as the generic evaluation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct AtPoint {
+    /// The noise, with its corners in the lanes.
+    noise: unsafe fn(&Tables, f32, f32, f32) -> f32,
+    /// The sum of its octaves, with those in the lanes.
+    sum: unsafe fn(&Tables, &LaneTerms, f32, f32, f32) -> f32,
+}
+
+impl AtPoint {
+    /// With the instructions of a level, at most those of the machine, if there are kernels for them.
+    pub fn new(level: Level) -> Option<AtPoint> {
+        match level.min(machine_level()) {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => Some(AtPoint { noise: avx2::single::improved, sum: avx2::single::sum }),
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => Some(AtPoint { noise: avx512::single::improved, sum: avx512::single::sum }),
+            _ => None,
+        }
+    }
+
+    /// The noise.
+    #[inline(always)]
+    pub fn noise(self, tables: &Tables, point: [f32; 3]) -> f32 {
+        let [x, y, z] = one_by_one(point);
+        // SAFETY, here and below: the machine has the instructions, or there would be no such kernel.
+        unsafe { (self.noise)(tables, x, y, z) }
+    }
+
+    /// The sum.
+    #[inline(always)]
+    pub fn sum(self, tables: &Tables, terms: &LaneTerms, point: [f32; 3]) -> f32 {
+        let [x, y, z] = one_by_one(point);
+        unsafe { (self.sum)(tables, terms, x, y, z) }
     }
 }
 
-/// Improved noise at one point, with its corners in the lanes, if the level in use has the instructions. Same bits as the
-/// generic evaluation.
+/// The coordinates, each read by itself. The compiler would read two of them as one number, for which the machine waits if
+/// they were written one by one just before: twenty nanoseconds.
 #[inline(always)]
-pub(crate) fn improved_at(tables: &Tables, point: [f32; 3]) -> Option<f32> {
-    // SAFETY: references may be read through. Volatile, or the compiler reads two coordinates as one number, for which
-    // the machine waits if they were written one by one just before: twenty nanoseconds.
-    let [x, y, z] = point.each_ref().map(|coordinate| unsafe { std::ptr::read_volatile(coordinate) });
-    match level() {
-        // SAFETY: the machine has the instructions, `level` says.
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx2 | Level::Avx512 => Some(unsafe { avx2::single::improved(tables, x, y, z) }),
-        _ => None,
-    }
+fn one_by_one(point: [f32; 3]) -> [f32; 3] {
+    // SAFETY: references may be read through.
+    let read = |coordinate: &f32| unsafe { std::ptr::read_volatile(coordinate) };
+    [read(&point[0]), read(&point[1]), read(&point[2])]
 }
 
 /// Work on slices that the compiler makes vectors of.

@@ -5,6 +5,7 @@
 
 use crate::basis::corners::Corners;
 use crate::basis::improved::blend_codes;
+use crate::number::Dual;
 use crate::simd::{Terms, Vector};
 
 /// The coordinates of a step along each axis.
@@ -43,8 +44,8 @@ impl Octave {
 pub(super) trait Halves<const STEP: usize> {
     /// What hashing hands to blending.
     type Codes;
-    /// Hashes the cells of the points, times the frequency.
-    fn hash(&self, frequency: f32, point: Point<STEP>) -> Self::Codes;
+    /// Hashes the cells of the points, times the frequency, for so many outputs.
+    fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>) -> Self::Codes;
     /// Adds an octave at the points whose `codes` are given, which become those of `next`. `USE` is [`ALONE`] where the
     /// frequencies and the amplitude are 1 and the sums are overwritten (no zero is negative), [`PLAIN`] or [`ABSOLUTE`].
     fn step<const USE: u8, const N: usize>(
@@ -99,7 +100,7 @@ fn alone<H: Halves<STEP>, const STEP: usize, const N: usize>(
     let octave = Octave { frequency: 1.0, amplitude: 1.0, slope: 1.0 };
     let point = |i: usize| [&x[i], &y[i], &z[i]];
     let last = steps - 1;
-    let mut codes = halves.hash(1.0, point(0));
+    let mut codes = halves.hash::<N>(1.0, point(0));
     for i in 0..last {
         let next = (1.0, point(i + 1));
         halves.step::<ALONE, N>(&octave, point(i), sums(outputs, i), &mut codes, next);
@@ -125,7 +126,7 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
         return;
     }
     let last = steps - 1;
-    let mut codes = halves.hash(terms.frequencies[0], point(0));
+    let mut codes = halves.hash::<N>(terms.frequencies[0], point(0));
     for start in (0..steps).step_by(BLOCK / STEP) {
         let end = steps.min(start + BLOCK / STEP);
         for index in 0..terms.octaves() {
@@ -161,6 +162,17 @@ pub(super) fn add_vector<V: Vector<LANES>, const STEP: usize, const LANES: usize
 ) {
     let sample =
         if N == 4 { blend_codes::<V, 3, true>(codes, offset) } else { blend_codes::<V, 3, false>(codes, offset) };
+    add::<V, STEP, LANES, N, USE>(octave, sample, sums, vector);
+}
+
+/// Adds an octave's noise at the points of one vector of a step.
+#[inline(always)]
+pub(super) fn add<V: Vector<LANES>, const STEP: usize, const LANES: usize, const N: usize, const USE: u8>(
+    octave: &Octave,
+    sample: Dual<V, 3>,
+    sums: &mut Sums<STEP, N>,
+    vector: usize,
+) {
     let (mut value, mut gradient) = (sample.value, sample.gradient);
     let zero = V::constant(0.0);
     if USE == ABSOLUTE {

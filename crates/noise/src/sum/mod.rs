@@ -15,7 +15,7 @@ pub(crate) use combine::Partial;
 use crate::filter::{self, Fade};
 use crate::noise::Noise;
 use crate::number::{Dual, Real};
-use crate::simd::{self, FEW, Lanes, Level, Terms};
+use crate::simd::{self, FEW, LaneTerms, Level, Terms};
 
 /// A sum over K octaves of a noise: Σ gᵏ n(lᵏ p) for k from 0 to K − 1, with the lacunarity l and the gain g; or the same
 /// with another term for n: see [`Combine`].
@@ -42,7 +42,7 @@ struct Scales {
     amplitudes: Vec<f64>,
     /// The same in single precision, and the products of both.
     singles: [Vec<f32>; 3],
-    lanes: Vec<Lanes>,
+    lanes: LaneTerms,
 }
 
 /// More would reach past every number's range.
@@ -68,13 +68,7 @@ impl Sum {
         let single = |numbers: &[f64]| -> Vec<f32> { numbers.iter().map(|&number| number as f32).collect() };
         let slopes: Vec<f64> = frequencies.iter().zip(&amplitudes).map(|(f, a)| f * a).collect();
         let singles = [single(&frequencies), single(&amplitudes), single(&slopes)];
-        let eight = |numbers: &[f32]| {
-            let mut lanes = [0.0; 8];
-            lanes[..numbers.len()].copy_from_slice(numbers);
-            lanes
-        };
-        let lanes = singles[0].chunks(8).zip(singles[1].chunks(8));
-        let lanes = lanes.map(|(f, a)| Lanes { frequencies: eight(f), amplitudes: eight(a) }).collect();
+        let lanes = LaneTerms::new(self.combine == Combine::Absolute, &singles[0], &singles[1]);
         self.scales = Arc::new(Scales { frequencies, amplitudes, singles, lanes });
         self
     }
@@ -215,8 +209,15 @@ impl Sum {
             }
             while values.len() - done <= FEW && done < values.len() {
                 let point = points.map(|coordinates| coordinates[done]);
-                let Some(sum) = self.noise.sum_at(level, &self.terms(), point) else { break };
-                values[done] = sum;
+                values[done] = match self.noise.at_point() {
+                    Some(kernel) if D == 3 && level == simd::level() => {
+                        kernel.sum(self.noise.tables(), &self.scales.lanes, [point[0], point[1], point[D - 1]])
+                    }
+                    _ => match self.noise.sum_at(level, &self.terms(), point) {
+                        Some(sum) => sum,
+                        None => break,
+                    },
+                };
                 done += 1;
             }
         }
@@ -262,9 +263,23 @@ impl Sum {
     }
 
     /// The value at one point in single precision, with the machine's vector instructions.
+    #[inline]
     pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
-        let sum = if self.combine.is_plain() { self.noise.sum_at(simd::level(), &self.terms(), point) } else { None };
-        sum.unwrap_or_else(|| self.value(point))
+        if !self.combine.is_plain() {
+            return self.value(point);
+        }
+        match self.noise.at_point() {
+            Some(kernel) if D == 3 => {
+                kernel.sum(self.noise.tables(), &self.scales.lanes, [point[0], point[1], point[D - 1]])
+            }
+            _ => self.sum_at(point),
+        }
+    }
+
+    /// The sum at one point by the generic evaluation, with its octaves in lanes if they can be.
+    #[inline(never)]
+    fn sum_at<const D: usize>(&self, point: [f32; D]) -> f32 {
+        self.noise.sum_at(simd::level(), &self.terms(), point).unwrap_or_else(|| self.value(point))
     }
 
     /// The values at many points, each with its footprint: the same bits as [`Sum::value_filtered`] in single precision.
@@ -294,6 +309,6 @@ impl Sum {
     fn terms(&self) -> Terms<'_> {
         let [frequencies, amplitudes, slopes] = &self.scales.singles;
         let absolute = self.combine == Combine::Absolute;
-        Terms { absolute, frequencies, amplitudes, slopes, lanes: &self.scales.lanes }
+        Terms { absolute, frequencies, amplitudes, slopes }
     }
 }

@@ -7,10 +7,11 @@
 
 use std::arch::x86_64::*;
 
-use super::{F32x8, I32x8};
+use super::{F32x8, I32x8, chosen};
 use crate::basis::Tables;
 use crate::basis::corners::Corners;
-use crate::number::{Integer, Real};
+use crate::basis::improved::blend_dots;
+use crate::number::{Dual, Integer, Real};
 use crate::simd::pipeline::{self, ABSOLUTE, ALONE, Halves, Octave, PLAIN, Point, Sums};
 use crate::simd::{Terms, Vector};
 use crate::table::CornerTables;
@@ -44,7 +45,7 @@ pub(in crate::simd) fn sum<const N: usize>(
             for (cells, numbers) in cells.iter_mut().zip(point) {
                 find_cells::<PLAIN>(octave.frequency, numbers, &mut cells.0[0]);
             }
-            hash(tables, &cells, 0, &mut codes);
+            hash::<N>(tables, &cells, 0, &mut codes);
             if terms.absolute {
                 add_vector::<ABSOLUTE, LANES, N>(&codes.0[0], &octave, point, &mut sums, 0);
             } else {
@@ -76,12 +77,12 @@ impl Halves<STEP> for Staged<'_> {
     type Codes = Codes;
 
     #[inline(always)]
-    fn hash(&self, frequency: f32, point: Point<STEP>) -> Codes {
+    fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>) -> Codes {
         let (mut cells, mut codes) = ([Stage::EMPTY; 3], Codes { stages: [Stage::EMPTY; 2], current: 0 });
         // SAFETY, here and below: the machine has AVX2.
         unsafe { find_step_cells::<PLAIN>(frequency, point, &mut cells) };
         for i in 0..VECTORS {
-            hash(self.0, &cells, i, &mut codes.stages[0]);
+            hash::<N>(self.0, &cells, i, &mut codes.stages[0]);
         }
         codes
     }
@@ -100,7 +101,7 @@ impl Halves<STEP> for Staged<'_> {
         let [even, odd] = &mut codes.stages;
         let (current, next) = if codes.current == 0 { (&*even, odd) } else { (&*odd, even) };
         for i in 0..VECTORS {
-            hash(self.0, &cells, i, next);
+            hash::<N>(self.0, &cells, i, next);
             unsafe { add_vector::<USE, STEP, N>(&current.0[i], octave, point, &mut sums, i) };
         }
         codes.current = 1 - codes.current;
@@ -147,14 +148,15 @@ fn find_cells<const USE: u8>(frequency: f32, numbers: &[f32; LANES], cells: &mut
     unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), cell) };
 }
 
-/// The codes of the eight points of a vector.
+/// The codes of the eight points of a vector: for the noise alone the choices of edges, with gradients the edges.
 #[inline(always)]
-fn hash(tables: &CornerTables, cells: &[Stage; 3], vector: usize, codes: &mut Stage) {
+fn hash<const N: usize>(tables: &CornerTables, cells: &[Stage; 3], vector: usize, codes: &mut Stage) {
     let [x, y, z] = [&cells[0].0[vector], &cells[1].0[vector], &cells[2].0[vector]];
+    let of_columns = if N == 4 { &tables.edges } else { &tables.choices };
     for (lane, code) in codes.0[vector].iter_mut().enumerate() {
         let code: *mut u32 = code;
         // SAFETY: a reference may be written through. Volatile, or else the compiler makes gathers of the reads.
-        unsafe { code.write_volatile(tables.hash([x[lane] as u8, y[lane] as u8, z[lane] as u8])) };
+        unsafe { code.write_volatile(tables.hash(of_columns, [x[lane] as u8, y[lane] as u8, z[lane] as u8])) };
     }
 }
 
@@ -175,12 +177,33 @@ fn add_vector<const USE: u8, const STEP: usize, const N: usize>(
         let position = load::<USE>(&point[axis].as_chunks().0[vector], octave.frequency);
         offset[axis] = position - position.floor();
     }
-    pipeline::add_vector::<F32x8, STEP, LANES, N, USE>(octave, corners(codes), offset, sums, vector);
+    if N == 4 {
+        return pipeline::add_vector::<F32x8, STEP, LANES, N, USE>(octave, corners(codes), offset, sums, vector);
+    }
+    let value = blend_dots(dots(codes, offset), offset);
+    pipeline::add::<F32x8, STEP, LANES, N, USE>(octave, Dual { value, gradient: [value; 3] }, sums, vector);
+}
+
+/// What the corners contribute, from the choices of their edges and the offset in the cell.
+#[inline]
+#[target_feature(enable = "avx2")]
+pub(super) fn dots(codes: I32x8, [x, y, z]: [F32x8; 3]) -> [F32x8; 8] {
+    let (one, sign) = (_mm256_set1_ps(1.0), _mm256_set1_ps(-0.0));
+    let y = [y.0, _mm256_sub_ps(one, y.0)];
+    let x = [_mm256_or_ps(x.0, sign), _mm256_or_ps(_mm256_sub_ps(one, x.0), sign)];
+    let z = [_mm256_or_ps(z.0, sign), _mm256_or_ps(_mm256_sub_ps(one, z.0), sign)];
+    let mut dots = [F32x8(one); 8];
+    let codes = corners(codes);
+    for (i, dot) in dots.iter_mut().enumerate() {
+        let (x, y, z) = (x[i & 1], y[i >> 1 & 1], z[i >> 2]);
+        *dot = F32x8(chosen(codes[i].0, _mm256_xor_ps(x, y), y, _mm256_xor_ps(z, y)));
+    }
+    dots
 }
 
 /// The codes of each corner, from all of them as [`CornerTables::hash`] has them (where the highest bit is that of x).
 #[inline(always)]
-pub(super) fn corners(codes: I32x8) -> Corners<I32x8> {
+fn corners(codes: I32x8) -> Corners<I32x8> {
     let mut corners = [codes; 16];
     for (i, corner) in (0..8).zip(&mut corners) {
         *corner = codes.shift_right(16 * (i & 1) + 4 * (i & 2) + (i & 4));

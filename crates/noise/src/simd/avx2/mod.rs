@@ -47,18 +47,6 @@ impl Neg for F32x8 {
 impl Mask for M32x8 {}
 
 impl I32x8 {
-    /// From the machine's register.
-    #[inline(always)]
-    pub fn from_bits(bits: __m256i) -> Self {
-        I32x8(bits)
-    }
-
-    /// The machine's register.
-    #[inline(always)]
-    pub fn bits(self) -> __m256i {
-        self.0
-    }
-
     /// The table's words at the low eight bits of each lane.
     #[inline(always)]
     fn gather(self, words: &[i32; 256]) -> Self {
@@ -192,6 +180,19 @@ impl Real for F32x8 {
     }
 }
 
+/// The sum of an edge's two components at the offset from a corner, by their choices in the low four bits of `code`: see
+/// [`crate::table::choice_code`]. The offset has the lengths `y` (sign clear) and, negative, `x` and `z`, of which `x_or_y` and
+/// `z_or_y` hold the differing bits. (A bit for the sign: where x is negative and y is not, it says which sign is taken.)
+#[inline]
+#[target_feature(enable = "avx2")]
+fn chosen(code: __m256i, x_or_y: __m256, y: __m256, z_or_y: __m256) -> __m256 {
+    let words = _mm256_castsi256_ps(_mm256_setr_epi32(0, i32::MAX, i32::MIN, -1, 0, i32::MAX, i32::MIN, -1));
+    let first = _mm256_permutevar_ps(words, code);
+    let second = _mm256_permutevar_ps(words, _mm256_srli_epi32::<2>(code));
+    let first = _mm256_xor_ps(_mm256_and_ps(x_or_y, first), y);
+    _mm256_add_ps(first, _mm256_xor_ps(_mm256_and_ps(z_or_y, second), y))
+}
+
 /// The components of the edge directions by the low three bits of their codes: see [`Real::edge_dot`].
 #[inline]
 #[target_feature(enable = "avx2")]
@@ -204,6 +205,12 @@ fn lines() -> [__m256; 3] {
 }
 
 impl F32x8 {
+    /// From the machine's register.
+    #[inline(always)]
+    pub fn from_lanes(lanes: __m256) -> Self {
+        F32x8(lanes)
+    }
+
     /// Negated where bit 3 of `code` is set.
     #[inline(always)]
     fn negated_by(self, code: I32x8) -> Self {

@@ -34,7 +34,7 @@ impl Halves<STEP> for InRegisters<'_> {
     type Codes = [__m512i; 4];
 
     #[inline(always)]
-    fn hash(&self, frequency: f32, point: Point<STEP>) -> Self::Codes {
+    fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>) -> Self::Codes {
         // SAFETY, here and below: the machine has the instructions.
         unsafe { hash::<PLAIN>(self.0, frequency, point) }
     }
