@@ -51,6 +51,25 @@ fn options_change_the_value() {
 }
 
 #[test]
+fn footprints_even_out() {
+    let turbulence = |more: &[&str]| value(&[&["improved", "0.3", "0.4", "0.6", "--sum", "turbulence"], more].concat());
+    let sharp = turbulence(&[]);
+    assert_eq!(turbulence(&["--footprint", "0"]), sharp);
+    assert_ne!(turbulence(&["--footprint", "0.3"]), sharp);
+    // Large footprints see the mean of the absolute value, and no slope.
+    let [mean, x, y, z] = turbulence(&["--footprint", "1000", "--gradient"])
+        .split_whitespace()
+        .map(|number| number.parse::<f64>().expect("a number"))
+        .collect::<Vec<_>>()[..]
+    else {
+        panic!("a value and three slopes")
+    };
+    assert!((mean - 0.428).abs() < 0.02 && [x, y, z] == [0.0; 3], "{mean} {x} {y} {z}");
+    let refused = run(&["noise", "improved", "1", "2", "3", "--footprint", "1", "--warp", "0.5"]);
+    assert_eq!(refused.status, 2);
+}
+
+#[test]
 fn there_are_one_to_four_dimensions() {
     assert_eq!(value(&["improved", "1.3"]), value(&["improved", "1.3", "0", "0"]));
     assert_ne!(value(&["improved", "1.3", "0.2", "0.7", "0.4"]), value(&["improved", "1.3", "0.2", "0.7"]));

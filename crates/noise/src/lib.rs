@@ -6,14 +6,16 @@
 //! use jaspe_noise::{Basis, Combine, Grid, Noise, Sum};
 //!
 //! let clouds = Sum::new(Noise::new(Basis::Improved, 0), Combine::Plain, 6);
-//! let grid = Grid { origin: [0.0; 2], step: [1.0 / 64.0; 2], count: [256; 2] };
+//! let grid = Grid { origin: [0.0; 2], step: [1.0 / 32.0; 2], count: [128; 2] };
 //! let mut values = vec![0.0; grid.len()];
 //! clouds.fill_grid(&grid, &mut values);
-//! let mut picture = b"P5 256 256 255\n".to_vec();
+//! let mut picture = b"P5 128 128 255\n".to_vec();
 //! picture.extend(values.iter().map(|value| (127.5 + 90.0 * value) as u8));
 //! // std::fs::write("clouds.pgm", picture)?;
-//! # assert_eq!(picture.len(), 15 + 256 * 256);
+//! # assert_eq!(picture.len(), 15 + 128 * 128);
 //! ```
+//!
+#![doc = concat!("![clouds](data:image/png;base64,", include_str!("clouds.base64"), ")")]
 //!
 //! Single points, gradients and slices of points:
 //!
@@ -50,7 +52,7 @@
 //! Formulas, sources and statistics of all of them and of the sums: [`Basis::declaration`], [`Combine::declaration`].
 //!
 //! All have one to four dimensions (one and two are slices of three at zero; cellular noise has its feature points in the
-//! dimensions of the point), a seed (0 is the published table), and, but for simplex noise, any integer period along each axis:
+//! dimensions of the point), a seed (0 is the published table), and any integer period along each axis:
 //! [`Noise::with_period`]. The first three repeat after 256 cells in any case.
 //!
 //! Sums add octaves plainly, by their absolute value, or as multifractals ([`Combine`]), with any lacunarity and gain; the

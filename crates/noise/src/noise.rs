@@ -30,24 +30,22 @@ pub struct PeriodError {
     pub axis: usize,
     /// The period that was asked for.
     pub period: u32,
-    /// The longest one that the noise can have; 0 if it can have none.
+    /// The longest one that the noise can have.
     pub longest: u32,
 }
 
 impl fmt::Display for PeriodError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let axis = ["x", "y", "z", "w"][self.axis.min(3)];
-        match self.longest {
-            0 => write!(formatter, "this noise repeats along no axis, found a period of {} along {axis}", self.period),
-            longest => write!(formatter, "expected a period up to {longest} along {axis}, found {}", self.period),
-        }
+        write!(formatter, "expected a period up to {} along {axis}, found {}", self.longest, self.period)
     }
 }
 
 impl std::error::Error for PeriodError {}
 
 impl Noise {
-    /// The longest period that an axis may have: up to here single precision counts cells one by one.
+    /// The longest period that an axis may have: up to here single precision counts cells one by one. (Simplex noise,
+    /// whose corners lie at sixths and eighths, an eighth of this.)
     pub const LONGEST_PERIOD: u32 = 1 << 24;
 
     /// The noise of this basis and seed. Seed 0 has the published permutation, other seeds a shuffle of it.
@@ -73,12 +71,13 @@ impl Noise {
 
     /// The same noise, repeating after so many cells along each axis that is named, from x on: the value at p and at p + period are the same
     /// bits wherever single precision represents both points exactly. 0 leaves an axis at the 256 of the noises with a
-    /// table, and without a period otherwise.
+    /// table, and without a period otherwise. (The cells of simplex noise are stretched along an axis with a period until a
+    /// multiple of three of them fit, in four dimensions of four; so the noise is another one than without.)
     ///
     /// # Errors
-    /// When a period is longer than [`Noise::LONGEST_PERIOD`], and for simplex noise, whose lattice is skewed.
+    /// When a period is longer than [`Noise::LONGEST_PERIOD`].
     pub fn with_period<const D: usize>(mut self, period: [u32; D]) -> Result<Self, PeriodError> {
-        let longest = if self.basis == Basis::Simplex { 0 } else { Self::LONGEST_PERIOD };
+        let longest = Self::LONGEST_PERIOD / if self.basis == Basis::Simplex { 8 } else { 1 };
         if let Some(axis) = period.iter().position(|&cells| cells > longest) {
             return Err(PeriodError { axis, period: period[axis], longest });
         }
@@ -303,7 +302,7 @@ impl Noise {
             Basis::Classic => classic::evaluate::<R, D, G>(&self.tables, point, &period),
             Basis::Lattice => lattice::evaluate::<R, D, G>(&self.tables, point, &period),
             Basis::Value => value::evaluate::<R, D, G>(&self.tables, point, &period),
-            Basis::Simplex => simplex::evaluate::<R, D, G>(&self.tables, point),
+            Basis::Simplex => simplex::evaluate::<R, D, G>(&self.tables, point, &period),
             Basis::Cellular => cellular::evaluate::<R, D, G>(&self.tables, &self.cellular, point, &period),
             Basis::White => white::evaluate::<R, D>(&self.tables, point, &period),
         }

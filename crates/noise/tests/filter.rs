@@ -85,3 +85,35 @@ fn filtered_sums_have_the_same_bits_at_every_level() {
         }
     }
 }
+
+#[test]
+fn gradients_of_filtered_sums_equal_central_differences() {
+    let mut random = random_numbers();
+    for combine in [Combine::Plain, Combine::Absolute, Combine::Ridged] {
+        let sum = Sum::new(Noise::new(Basis::Improved, 0), combine, 4);
+        for footprint in [0.0, 0.05, 0.3, 1.0, 20.0] {
+            for _ in 0..50 {
+                let point: [f64; 3] = std::array::from_fn(|_| f64::from(random()) * 30.0);
+                let (value, gradient) = sum.value_and_gradient_filtered(point, footprint);
+                assert_eq!(value, sum.value_filtered(point, footprint));
+                for axis in 0..3 {
+                    const STEP: f64 = 1e-5;
+                    let at = |step: f64| {
+                        let mut moved = point;
+                        moved[axis] += step;
+                        sum.value_filtered(moved, footprint)
+                    };
+                    let difference = (at(STEP) - at(-STEP)) / (2.0 * STEP);
+                    let kinked = combine != Combine::Plain && (difference - gradient[axis]).abs() > 1e-5;
+                    // (Where an octave passes zero, its absolute value has a kink: the two sides differ.)
+                    let one_side = (at(STEP) - at(0.0)) / STEP;
+                    let near = (difference - gradient[axis]).abs() < 1e-5 * (1.0 + difference.abs());
+                    assert!(
+                        near || kinked && (one_side - difference).abs() > 1e-4,
+                        "{combine:?} at {point:?}, {footprint}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -4,7 +4,7 @@ use std::io::{self, BufRead, BufReader, BufWriter, Read as _, Write};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use jaspe_noise::{Basis, Cellular, Combine, Feature, Field, Metric, Recipe};
+use jaspe_noise::{Basis, Cellular, Combine, Feature, Field, Metric, Recipe, Sum};
 
 use crate::Outcome;
 use crate::arguments::period;
@@ -26,6 +26,7 @@ Examples:
   jaspe noise cellular 0.3 0.7 1.9 --feature f2-f1 --metric manhattan --jitter 0.8
   jaspe noise simplex 0.3 0.7 1.9 0.2 --sum ridged --octaves 4.5 --lacunarity 2.1
   jaspe noise value 0.3 0.7 1.9 --warp 0.5 --warp 0.3
+  jaspe noise improved 1.5 2.5 3.5 --sum turbulence --footprint 0.25
   seq 0 0.1 10 | awk '{ print $1, 0, 0 }' | jaspe noise improved -")]
 pub struct Noise {
     /// The noise
@@ -77,6 +78,11 @@ pub struct Noise {
     #[arg(long, value_name = "PX,PY,PZ", value_parser = period)]
     period: Option<[u32; 3]>,
 
+    /// Print the average over a square or cube with this side around the point, as filtered sums approximate it: what a
+    /// sample of a picture sees
+    #[arg(long, value_name = "SIDE", value_parser = side, allow_negative_numbers = true, conflicts_with = "warp")]
+    footprint: Option<f64>,
+
     /// Print the exact derivatives along the axes after the value
     #[arg(long)]
     gradient: bool,
@@ -124,18 +130,28 @@ fn bases() -> impl TypedValueParser<Value = Basis> {
     PossibleValuesParser::new(words).map(|name| Basis::from_name(&name).expect("the parser accepts bases only"))
 }
 
+fn side(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(side) if (0.0..f64::INFINITY).contains(&side) => Ok(side),
+        _ => Err("expected a number from 0 on".to_owned()),
+    }
+}
+
 /// Longer lines hold no point.
 const LONGEST_LINE: u64 = 4096;
 
 impl Noise {
     /// Prints the value, or the values.
     pub fn run(self) -> Result<Outcome, Failure> {
-        let field = self.field()?;
+        let evaluation = match (self.field()?, self.footprint) {
+            (Field::Sum(sum), Some(footprint)) => Evaluation::Filtered(sum, footprint),
+            (field, _) => Evaluation::Field(field),
+        };
         let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
         if self.point == ["-"] {
-            self.stream(&field, io::stdin().lock(), &mut out)?;
+            self.stream(&evaluation, io::stdin().lock(), &mut out)?;
         } else {
-            let line = self.line(&field, self.point.iter().map(String::as_str)).map_err(|message| {
+            let line = self.line(&evaluation, self.point.iter().map(String::as_str)).map_err(|message| {
                 Failure::new(message).hint("give one to four coordinates, or `-` to read points from standard input")
             })?;
             writeln!(out, "{line}")?;
@@ -160,7 +176,7 @@ impl Noise {
         recipe.field().map_err(|error| Failure::new(format!("--{error}")))
     }
 
-    fn stream(&self, field: &Field, input: impl io::Read, out: &mut impl Write) -> Result<(), Failure> {
+    fn stream(&self, evaluation: &Evaluation, input: impl io::Read, out: &mut impl Write) -> Result<(), Failure> {
         let mut input = BufReader::with_capacity(1 << 16, input);
         let mut line = Vec::new();
         for number in 1_u64.. {
@@ -175,7 +191,7 @@ impl Noise {
             if words.clone().next().is_none() {
                 continue;
             }
-            let values = self.line(field, words).map_err(|message| Failure::new(format!("line {number}: {message}")));
+            let values = self.line(evaluation, words).map_err(|message| Failure::new(format!("line {number}: {message}")));
             let values = values.inspect_err(|_| _ = out.flush())?;
             writeln!(out, "{values}")?;
             // Whoever waits for each answer before asking again shall get it.
@@ -187,25 +203,32 @@ impl Noise {
     }
 
     /// What is printed for a point.
-    fn line<'a>(&self, field: &Field, words: impl Iterator<Item = &'a str>) -> Result<String, String> {
+    fn line<'a>(&self, evaluation: &Evaluation, words: impl Iterator<Item = &'a str>) -> Result<String, String> {
         let number = |word: &str| word.parse::<f64>().map_err(|_| format!("expected a number, found `{word}`"));
         let point: Vec<f64> = words.map(number).collect::<Result<_, _>>()?;
         match point[..] {
-            [x] => Ok(self.print(field, [x])),
-            [x, y] => Ok(self.print(field, [x, y])),
-            [x, y, z] => Ok(self.print(field, [x, y, z])),
-            [x, y, z, w] => Ok(self.print(field, [x, y, z, w])),
+            [x] => Ok(self.print(evaluation, [x])),
+            [x, y] => Ok(self.print(evaluation, [x, y])),
+            [x, y, z] => Ok(self.print(evaluation, [x, y, z])),
+            [x, y, z, w] => Ok(self.print(evaluation, [x, y, z, w])),
             _ => Err(format!("expected one to four coordinates, found {}", point.len())),
         }
     }
 
-    fn print<const D: usize>(&self, field: &Field, point: [f64; D]) -> String {
-        if self.gradient {
-            let (value, gradient) = field.value_and_gradient(point);
-            let numbers = std::iter::once(value).chain(gradient);
-            numbers.map(shortest).collect::<Vec<_>>().join(" ")
-        } else {
-            shortest(field.value(point))
-        }
+    fn print<const D: usize>(&self, evaluation: &Evaluation, point: [f64; D]) -> String {
+        let (value, gradient) = match (evaluation, self.gradient) {
+            (Evaluation::Field(field), true) => field.value_and_gradient(point),
+            (Evaluation::Field(field), false) => return shortest(field.value(point)),
+            (Evaluation::Filtered(sum, footprint), true) => sum.value_and_gradient_filtered(point, *footprint),
+            (Evaluation::Filtered(sum, footprint), false) => return shortest(sum.value_filtered(point, *footprint)),
+        };
+        std::iter::once(value).chain(gradient).map(shortest).collect::<Vec<_>>().join(" ")
     }
+}
+
+/// What is evaluated.
+enum Evaluation {
+    Field(Field),
+    /// A sum seen through footprints of this side.
+    Filtered(Sum, f64),
 }

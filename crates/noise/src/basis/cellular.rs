@@ -138,6 +138,18 @@ impl<R: Real, const D: usize> Found<R, D> {
     }
 }
 
+/// The rows of three cells along x that are searched: their places along y, z and w. In fewer dimensions, the first ones. (A
+/// list, so that the compiler keeps the loop: dozens of copies of its body would be no faster.)
+static ROWS: [[usize; 3]; 27] = {
+    let mut rows = [[0; 3]; 27];
+    let mut i = 0;
+    while i < 27 {
+        rows[i] = [i % 3, i / 3 % 3, i / 9];
+        i += 1;
+    }
+    rows
+};
+
 /// The noise by a search for the nearest feature points.
 #[inline(always)]
 fn search<R: Real, const D: usize, const G: bool, const KEPT: u8>(
@@ -161,35 +173,30 @@ fn search<R: Real, const D: usize, const G: bool, const KEPT: u8>(
     }
     let far = Found { distance: R::constant(1e30), offset: [R::constant(0.0); D] };
     let (mut first, mut second, mut number) = (far, far, R::constant(0.0));
-    let around = |axis: usize| if axis < D { tables.around } else { 1 };
-    for w in 0..around(3) {
-        for z in 0..around(2) {
-            for y in 0..around(1) {
-                let row = hashes[1][y] ^ hashes[2][z] ^ hashes[3][w] ^ R::Int::constant(tables.hash_seed);
-                for x in 0..3 {
-                    let bits = hash::bits::<R>(row ^ hashes[0][x]);
-                    let corner = [offsets[0][x], offsets[1][y], offsets[2][z], offsets[3][w]];
-                    let found = grid.visit::<R, D>(metric, bits, corner);
-                    if KEPT == NUMBER {
-                        let closer = found.distance.less(first.distance);
-                        number = R::select(closer, hash::signed(bits), number);
-                    }
-                    if !G {
-                        if KEPT == TWO {
-                            second.distance = second.distance.min(first.distance.max(found.distance));
-                        }
-                        first.distance = first.distance.min(found.distance);
-                        continue;
-                    }
-                    let closer = found.distance.less(first.distance);
-                    if KEPT == TWO {
-                        let between = found.distance.less(second.distance);
-                        let middle = Found::select::<G>(between, found, second);
-                        second = Found::select::<G>(closer, first, middle);
-                    }
-                    first = Found::select::<G>(closer, found, first);
-                }
+    for &[y, z, w] in &ROWS[..3usize.pow(D as u32 - 1)] {
+        let row = hashes[1][y] ^ hashes[2][z] ^ hashes[3][w] ^ R::Int::constant(tables.hash_seed);
+        for x in 0..3 {
+            let bits = hash::bits::<R>(row ^ hashes[0][x]);
+            let corner = [offsets[0][x], offsets[1][y], offsets[2][z], offsets[3][w]];
+            let found = grid.visit::<R, D>(metric, bits, corner);
+            if KEPT == NUMBER {
+                let closer = found.distance.less(first.distance);
+                number = R::select(closer, hash::signed(bits), number);
             }
+            if !G {
+                if KEPT == TWO {
+                    second.distance = second.distance.min(first.distance.max(found.distance));
+                }
+                first.distance = first.distance.min(found.distance);
+                continue;
+            }
+            let closer = found.distance.less(first.distance);
+            if KEPT == TWO {
+                let between = found.distance.less(second.distance);
+                let middle = Found::select::<G>(between, found, second);
+                second = Found::select::<G>(closer, first, middle);
+            }
+            first = Found::select::<G>(closer, found, first);
         }
     }
     if KEPT == NUMBER {

@@ -62,9 +62,6 @@ pub(crate) struct Tables {
     /// The components of the unit gradients of classic noise: on the sphere, and on that of four dimensions.
     pub(crate) gradients: [FloatTable; 3],
     gradients_four: [FloatTable; 4],
-    /// Along an axis, how many cells are searched for feature points: 3. (Read from here, so that the compiler keeps the
-    /// loops: dozens of copies of their bodies would be no faster.)
-    around: usize,
     /// What the hash of cells starts from.
     pub(crate) hash_seed: i32,
 }
@@ -81,7 +78,6 @@ impl Tables {
             edges,
             gradients: seed::unit_vectors(seed).map(FloatTable::new),
             gradients_four: seed::unit_vectors(seed).map(FloatTable::new),
-            around: 3,
             hash_seed: seed::Random::new(seed).bits() as i32,
         }
     }

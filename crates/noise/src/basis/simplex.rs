@@ -6,9 +6,13 @@
 //! chosen by the hash of [`super::hash`], and with the radius √½ at which the parts of the corners fade out within their simplices (Perlin's
 //! larger one leaves small jumps). In single precision the skewed coordinates round: past a million units from the
 //! origin the noise is rough, past 10³⁷ it is NaN.
+//!
+//! A step of one unit along an axis leads from no corner to another; a step of three does in space, since the skew is ⅓. So with
+//! a period, cells are stretched along its axis until a multiple of three of them fit (by a third at most for periods from
+//! 3 on). In four dimensions the skew is irrational; with a period it is ¼ instead, and the multiple one of four.
 
 use super::corners::plus_zero;
-use super::{Tables, hash};
+use super::{Period, Tables, hash, wrap};
 use crate::number::{Dual, Integer, Real};
 
 /// Brings the largest absolute value to 1: without it, a search that climbs from four million points of twenty seeds ends
@@ -18,15 +22,69 @@ const SCALE: f64 = 76.88;
 /// In four dimensions the largest of twenty million values of 64 seeds comes within 5 % of 1 by this.
 const SCALE_FOUR: f64 = 60.0;
 
+/// The lattice: cubes, compressed along their diagonal.
+#[derive(Clone, Copy)]
+struct Shape {
+    /// What times the sum of a point's coordinates, added to each, makes the corners whole numbers; and back.
+    skew: f64,
+    unskew: f64,
+    /// The corners' coordinates, with a period, are multiples of one over this; and periods multiples of that, in units.
+    parts: f64,
+    units: f64,
+}
+
+const SPACE: Shape = Shape { skew: 1.0 / 3.0, unskew: 1.0 / 6.0, parts: 6.0, units: 3.0 };
+
+/// (√5 − 1)/4 and (5 − √5)/20; without periods.
+const FOUR: Shape = Shape { skew: 0.309_016_994_374_947_45, unskew: 0.138_196_601_125_010_5, parts: 0.0, units: 0.0 };
+
+const FOUR_PERIODIC: Shape = Shape { skew: 0.25, unskew: 0.125, parts: 8.0, units: 4.0 };
+
 /// The noise at a point; below three dimensions the other coordinates are 0.
 #[inline(always)]
-pub(crate) fn evaluate<R: Real, const D: usize, const G: bool>(tables: &Tables, point: [R; D]) -> Dual<R, D> {
+pub(crate) fn evaluate<R: Real, const D: usize, const G: bool>(
+    tables: &Tables,
+    point: [R; D],
+    period: &Period,
+) -> Dual<R, D> {
     let zero = R::constant(0.0);
     let mut padded = [zero; 4];
     padded[..D].copy_from_slice(&point);
-    let (sum, gradient) = if D == 4 { sum_four::<R, G>(tables, padded) } else { sum_three::<R, G>(tables, padded) };
+    if *period == [0.0; 4] {
+        let shape = if D == 4 { &FOUR } else { &SPACE };
+        return sum::<R, D, G>(tables, padded, shape, &[0.0; 4]);
+    }
+    let shape = if D == 4 { &FOUR_PERIODIC } else { &SPACE };
+    let (mut stretch, mut stretched) = ([1.0; 4], [0.0; 4]);
+    for axis in 0..D {
+        if period[axis] != 0.0 {
+            stretched[axis] = shape.units * (period[axis] / shape.units).round().max(1.0);
+            stretch[axis] = stretched[axis] / period[axis];
+            padded[axis] = wrap(point[axis], period[axis]) * R::constant(stretch[axis]);
+        }
+    }
+    let mut sample = sum::<R, D, G>(tables, padded, shape, &stretched);
+    for axis in 0..if G { D } else { 0 } {
+        sample.gradient[axis] = sample.gradient[axis] * R::constant(stretch[axis]);
+    }
+    sample
+}
+
+/// The corners' parts, scaled.
+#[inline(always)]
+fn sum<R: Real, const D: usize, const G: bool>(
+    tables: &Tables,
+    point: [R; 4],
+    shape: &Shape,
+    period: &Period,
+) -> Dual<R, D> {
+    let (sum, gradient) = if D == 4 {
+        sum_four::<R, G>(tables, point, shape, period)
+    } else {
+        sum_three::<R, G>(tables, point, shape, period)
+    };
     let scale = R::constant(if D == 4 { SCALE_FOUR } else { SCALE });
-    let mut sample = Dual { value: plus_zero(sum * scale), gradient: [zero; D] };
+    let mut sample = Dual { value: plus_zero(sum * scale), gradient: [R::constant(0.0); D] };
     if G {
         for (part, unscaled) in sample.gradient.iter_mut().zip(gradient) {
             *part = plus_zero(unscaled * scale);
@@ -36,21 +94,26 @@ pub(crate) fn evaluate<R: Real, const D: usize, const G: bool>(tables: &Tables, 
 }
 
 /// A simplex: its first corner, and the point as seen from there.
-struct Base<R: Real> {
-    /// The corner's coordinates and the seed, mixed for [`hash::bits`].
+struct Base<'a, R: Real> {
+    shape: &'a Shape,
+    seed: i32,
+    period: &'a Period,
+    /// The corner's coordinates in the skewed space.
+    cell: [R; 4],
+    /// Those and the seed, mixed for [`hash::bits`] (without a period).
     mixed: R::Int,
     /// What a step along each axis changes of that.
     changes: [R::Int; 4],
     offset: [R; 4],
 }
 
-impl<R: Real> Base<R> {
-    /// The one around a point of N dimensions. `skew` makes the corners whole numbers, `unskew` goes back.
+impl<'a, R: Real> Base<'a, R> {
+    /// The one around a point of N dimensions.
     #[inline(always)]
-    fn new<const N: usize>(seed: i32, point: [R; 4], skew: f64, unskew: f64) -> Self {
+    fn new<const N: usize>(seed: i32, point: [R; 4], shape: &'a Shape, period: &'a Period) -> Self {
         let (mut cell, mut offset, mut hashes) = (point, point, [R::Int::constant(0); 4]);
         let mut changes = hashes;
-        let shift = total::<R, N>(&point) * R::constant(skew);
+        let shift = total::<R, N>(&point) * R::constant(shape.skew);
         for axis in 0..N {
             cell[axis] = (point[axis] + shift).floor();
             hashes[axis] = cell[axis].to_int() * R::Int::constant(hash::FACTORS[axis]);
@@ -63,19 +126,19 @@ impl<R: Real> Base<R> {
             // What the step to the next cell changes.
             changes[axis] = (hashes[axis] + R::Int::constant(hash::FACTORS[axis])) ^ hashes[axis];
         }
-        let shift = total::<R, N>(&cell) * R::constant(unskew);
+        let shift = total::<R, N>(&cell) * R::constant(shape.unskew);
         for axis in 0..N {
             offset[axis] = point[axis] - (cell[axis] - shift);
         }
-        Base { mixed, changes, offset }
+        Base { shape, seed, period, cell, mixed, changes, offset }
     }
 
     /// The random bits of the corner that is a step away along the axes of the mask, and the point as seen from there.
     /// (`number`: how many steps.)
     #[inline(always)]
-    fn corner<const N: usize>(&self, steps: [R::Mask; 4], number: usize, unskew: f64) -> (R::Int, [R; 4]) {
+    fn corner<const N: usize>(&self, steps: [R::Mask; 4], number: usize) -> (R::Int, [R; 4]) {
         let (mut mixed, mut from) = (self.mixed, self.offset);
-        let (zero, stay) = (R::Int::constant(0), number as f64 * unskew);
+        let (zero, stay) = (R::Int::constant(0), number as f64 * self.shape.unskew);
         for axis in 0..if number == 0 { 0 } else { N } {
             let (here, there) = (R::constant(stay), R::constant(stay - 1.0));
             if number == N {
@@ -86,7 +149,27 @@ impl<R: Real> Base<R> {
                 from[axis] = from[axis] + R::select(steps[axis], there, here);
             }
         }
+        if *self.period != [0.0; 4] {
+            mixed = self.mixed_within_period::<N>(steps, number);
+        }
         (hash::bits::<R>(mixed), from)
+    }
+
+    /// The corner's unskewed coordinates, in whole parts, within the periods, mixed with the seed.
+    #[inline(always)]
+    fn mixed_within_period<const N: usize>(&self, steps: [R::Mask; 4], number: usize) -> R::Int {
+        let mut corner = self.cell;
+        for axis in 0..if number == 0 { 0 } else { N } {
+            let next = corner[axis] + R::constant(1.0);
+            corner[axis] = if number == N { next } else { R::select(steps[axis], next, corner[axis]) };
+        }
+        let (sum, parts) = (total::<R, N>(&corner), self.shape.parts);
+        let mut mixed = R::Int::constant(self.seed);
+        for axis in 0..N {
+            let coordinate = wrap(corner[axis] * R::constant(parts) - sum, self.period[axis] * parts);
+            mixed = mixed ^ (coordinate.to_int() * R::Int::constant(hash::FACTORS[axis]));
+        }
+        mixed
     }
 }
 
@@ -100,9 +183,8 @@ fn total<R: Real, const N: usize>(parts: &[R; 4]) -> R {
 }
 
 #[inline(always)]
-fn sum_three<R: Real, const G: bool>(tables: &Tables, point: [R; 4]) -> (R, [R; 4]) {
-    const UNSKEW: f64 = 1.0 / 6.0;
-    let base = Base::new::<3>(tables.hash_seed, point, 1.0 / 3.0, UNSKEW);
+fn sum_three<R: Real, const G: bool>(tables: &Tables, point: [R; 4], shape: &Shape, period: &Period) -> (R, [R; 4]) {
+    let base = Base::new::<3>(tables.hash_seed, point, shape, period);
     // From the first corner to the last one goes one step along each axis, along the axis of the largest offset first.
     let [x, y, z, _] = base.offset;
     let (yx, zx, zy) = (x.less(y), x.less(z), y.less(z));
@@ -110,7 +192,7 @@ fn sum_three<R: Real, const G: bool>(tables: &Tables, point: [R; 4]) -> (R, [R; 
     let second = [!(yx & zx), yx | !zy, zx | zy, yx];
     let mut sum = (R::constant(0.0), [R::constant(0.0); 4]);
     for (number, steps) in [first, first, second, second].into_iter().enumerate() {
-        let (bits, from) = base.corner::<3>(steps, number, UNSKEW);
+        let (bits, from) = base.corner::<3>(steps, number);
         let code = bits.shift_right(28);
         if G {
             let [x, y, z] = R::edge(code);
@@ -124,12 +206,9 @@ fn sum_three<R: Real, const G: bool>(tables: &Tables, point: [R; 4]) -> (R, [R; 
 }
 
 #[inline(always)]
-fn sum_four<R: Real, const G: bool>(tables: &Tables, point: [R; 4]) -> (R, [R; 4]) {
-    // (√5 − 1)/4 and (5 − √5)/20
-    const SKEW: f64 = 0.309_016_994_374_947_45;
-    const UNSKEW: f64 = 0.138_196_601_125_010_5;
+fn sum_four<R: Real, const G: bool>(tables: &Tables, point: [R; 4], shape: &Shape, period: &Period) -> (R, [R; 4]) {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
-    let base = Base::new::<4>(tables.hash_seed, point, SKEW, UNSKEW);
+    let base = Base::new::<4>(tables.hash_seed, point, shape, period);
     // Along which axes is the offset larger than along how many others?
     let mut rank = [zero; 4];
     for low in 0..4 {
@@ -143,7 +222,7 @@ fn sum_four<R: Real, const G: bool>(tables: &Tables, point: [R; 4]) -> (R, [R; 4
     for number in 0..5 {
         let bound = R::constant(3.5 - number as f64);
         let steps = [bound.less(rank[0]), bound.less(rank[1]), bound.less(rank[2]), bound.less(rank[3])];
-        let (bits, from) = base.corner::<4>(steps, number, UNSKEW);
+        let (bits, from) = base.corner::<4>(steps, number);
         // One of the four axes has no part; the other three have random signs.
         let sign = |bit: i32| R::select((bits & R::Int::constant(bit << 20)).equals(R::Int::constant(0)), one, -one);
         let without = bits.shift_right(30);

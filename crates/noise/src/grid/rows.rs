@@ -9,7 +9,7 @@
 use super::axis::{Axis, PADDING};
 use crate::basis::{Basis, Tables, hash};
 use crate::noise::Noise;
-use crate::number::{Dual, Real};
+use crate::number::{Dual, Integer, Real};
 use crate::simd::{Vector, Wide};
 use crate::sum::{Combine, Partial};
 
@@ -31,40 +31,83 @@ pub(super) struct Rows<'a> {
     pub values: &'a mut [f32],
 }
 
+/// So many rows of points are evaluated side by side, if they lie in the same cells.
+const SIDE_BY_SIDE: usize = 4;
+
 impl Wide for Rows<'_> {
     #[inline(always)]
     fn run<V: Vector<LANES>, const LANES: usize>(self) {
         let [width, height] = self.counts;
-        let mut states: Vec<State<V, LANES>> = self.octaves.iter().map(State::new).collect();
-        let mut partials = vec![Partial::<V, 1>::new(); width.div_ceil(LANES)];
-        for (row, values) in self.values.chunks_mut(width).enumerate() {
-            let (y, z) = (row % height, row / height);
-            for (index, state) in states.iter_mut().enumerate() {
-                if y == 0 {
-                    state.start_plane(z);
+        let mut states: Vec<State<V, LANES>> =
+            self.octaves.iter().map(|octave| State::new(self.combine, octave)).collect();
+        for (z, plane) in self.values.chunks_mut(width * height).enumerate() {
+            for state in &mut states {
+                state.start_plane(z);
+            }
+            let mut y = 0;
+            while y < height {
+                let mut count = SIDE_BY_SIDE.min(height - y);
+                for state in &mut states {
+                    state.reach_row(y);
+                    count = count.min(state.rows_in_cell(y));
                 }
-                state.reach_row(y);
+                let rows = &mut plane[y * width..];
                 // (A loop for each way to combine: there is little else in it.)
-                match (self.combine, index) {
-                    (Combine::Plain, 0) => state.add::<true>(Combine::Plain, &mut partials),
-                    (Combine::Plain, _) => state.add::<false>(Combine::Plain, &mut partials),
-                    (Combine::Absolute, 0) => state.add::<true>(Combine::Absolute, &mut partials),
-                    (Combine::Absolute, _) => state.add::<false>(Combine::Absolute, &mut partials),
-                    (combine, 0) => state.add::<true>(combine, &mut partials),
-                    (combine, _) => state.add::<false>(combine, &mut partials),
-                }
-            }
-            let (whole, rest) = values.as_chunks_mut();
-            for (values, partial) in whole.iter_mut().zip(&partials) {
-                partial.sum.value.store(values);
-            }
-            if let (false, Some(partial)) = (rest.is_empty(), partials.last()) {
-                let mut lanes = [0.0; LANES];
-                partial.sum.value.store(&mut lanes);
-                rest.copy_from_slice(&lanes[..rest.len()]);
+                y += match (self.combine, count) {
+                    (Combine::Plain, 4) => add::<V, LANES, 4>(Combine::Plain, &states, y, width, rows),
+                    (Combine::Plain, 2 | 3) => add::<V, LANES, 2>(Combine::Plain, &states, y, width, rows),
+                    (Combine::Plain, _) => add::<V, LANES, 1>(Combine::Plain, &states, y, width, rows),
+                    (Combine::Absolute, 4) => add::<V, LANES, 4>(Combine::Absolute, &states, y, width, rows),
+                    (Combine::Absolute, 2 | 3) => add::<V, LANES, 2>(Combine::Absolute, &states, y, width, rows),
+                    (combine, _) => add::<V, LANES, 1>(combine, &states, y, width, rows),
+                };
             }
         }
     }
+}
+
+/// Sums all octaves at the points of some rows of the same cells, from y on; returns how many.
+#[inline(always)]
+fn add<V: Vector<LANES>, const LANES: usize, const ROWS: usize>(
+    combine: Combine,
+    states: &[State<V, LANES>],
+    y: usize,
+    width: usize,
+    values: &mut [f32],
+) -> usize {
+    for vector in 0..width.div_ceil(LANES) {
+        let mut partials = [Partial::<V, 1>::new(); ROWS];
+        for state in states {
+            let [p0, q0, p1, q1] = state.columns[vector];
+            let (frequency, amplitude) = (state.octave.frequency, state.octave.amplitude);
+            let factors: &[[f32; 4]; ROWS] = state.factors[y..].first_chunk().expect("there are so many rows");
+            for row in 0..ROWS {
+                let [a, b, c, d] = factors[row];
+                let (low, high) = (p0 * V::splat(a) + q0 * V::splat(b), p1 * V::splat(c) + q1 * V::splat(d));
+                if combine == Combine::Plain {
+                    // (The factors have the amplitude.)
+                    partials[row].sum.value = partials[row].sum.value + (low + high);
+                    continue;
+                }
+                let noise = Dual { value: low + high, gradient: [V::constant(0.0)] };
+                partials[row].add::<false>(combine, frequency, amplitude, combine.fold::<V, 1, false>(noise));
+            }
+        }
+        let x = vector * LANES;
+        for row in 0..ROWS {
+            let values = &mut values[row * width..][x..width];
+            let sums = partials[row].sum.value;
+            match values.first_chunk_mut() {
+                Some(values) => sums.store(values),
+                None => {
+                    let mut lanes = [0.0; LANES];
+                    sums.store(&mut lanes);
+                    values.copy_from_slice(&lanes[..values.len()]);
+                }
+            }
+        }
+    }
+    ROWS
 }
 
 /// What a row of lattice points contributes: slopes along x and y, and the rest.
@@ -79,9 +122,13 @@ struct State<'a, V: Real, const LANES: usize> {
     octave: &'a Octave<'a>,
     /// The hashes of the lattice points along x, before those of y and z.
     hashes: Vec<i32>,
-    /// Those of a row of lattice points, below and above z.
+    /// Those of rows of lattice points, below and above z: of all rows, if the plane is small, or of one.
     below: Vec<i32>,
     above: Vec<i32>,
+    /// For each of those rows the cell of the plane and the row for which it was hashed, if it was.
+    hashed: Vec<Option<(usize, usize)>>,
+    /// How long a row of lattice points is, with some space after it.
+    room: usize,
     lattice: Lattice,
     /// For each vector of points where its window of lattice points begins, and where its points are in there.
     windows: Vec<(usize, V::Int)>,
@@ -90,20 +137,25 @@ struct State<'a, V: Real, const LANES: usize> {
     /// The lower row in `columns`, if there is one.
     row: Option<usize>,
     plane: usize,
-    /// The factors of a row of points.
-    factors: [V; 4],
+    /// For each row of points what P and Q are multiplied by (in plain sums times the amplitude).
+    factors: Vec<[f32; 4]>,
 }
+
+/// The hashes of so many lattice points are kept from plane to plane, where several planes lie between the same ones.
+const KEPT: usize = 1 << 14;
 
 impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
     #[inline(always)]
-    fn new(octave: &'a Octave<'a>) -> Self {
-        let [x, _, _] = &octave.axes;
+    fn new(combine: Combine, octave: &'a Octave<'a>) -> Self {
+        let [x, y, z] = &octave.axes;
         let tables = octave.noise.tables();
         let hash = |&coordinate: &i32| match octave.noise.basis() {
             Basis::Value => coordinate.wrapping_mul(hash::FACTORS[0]) ^ tables.hash_seed,
             _ => i32::from(tables.permutation.bytes[(coordinate & 255) as usize]),
         };
         let room = x.lattice.len().next_multiple_of(PADDING) + PADDING;
+        let repeats = z.cell.len() >= 2 * z.lattice.len() && y.lattice.len() * room <= KEPT;
+        let kept = if repeats { y.lattice.len() } else { 1 };
         let (chunks, _) = x.cell.as_chunks::<LANES>();
         let window = |cells: &[usize; LANES]| {
             let mut places = [0; LANES];
@@ -112,17 +164,27 @@ impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
             }
             (cells[0], V::load_int(&places))
         };
+        let factors = y.curve.iter().zip(y.from_low.iter().zip(&y.from_high));
+        let scale = if combine == Combine::Plain { octave.amplitude as f32 } else { 1.0 };
+        let factors = factors.map(|(v, (low, high))| {
+            let (lower, upper) = (scale * (1.0 - v), scale * v);
+            [lower, lower * low, upper, upper * high]
+        });
+        let mut hashes: Vec<i32> = x.lattice.iter().map(hash).collect();
+        hashes.resize(room, 0);
         State {
             octave,
-            hashes: x.lattice.iter().map(hash).collect(),
-            below: vec![0; room],
-            above: vec![0; room],
+            hashes,
+            below: vec![0; room * kept],
+            above: vec![0; room * kept],
+            hashed: vec![None; kept],
+            room,
             lattice: Lattice { bx: vec![0.0; room], by: vec![0.0; room], c: vec![0.0; room] },
             windows: chunks.iter().map(window).collect(),
             columns: vec![[V::constant(0.0); 4]; chunks.len()],
             row: None,
             plane: 0,
-            factors: [V::constant(0.0); 4],
+            factors: factors.collect(),
         }
     }
 
@@ -131,11 +193,17 @@ impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
         (self.plane, self.row) = (z, None);
     }
 
+    /// How many rows of points lie in the same row of cells, from y on (as far as they are of interest).
+    #[inline(always)]
+    fn rows_in_cell(&self, y: usize) -> usize {
+        let cells = &self.octave.axes[1].cell[y..];
+        cells.iter().take(SIDE_BY_SIDE).take_while(|&&cell| cell == cells[0]).count()
+    }
+
     /// Prepares the row of points y.
     #[inline(always)]
     fn reach_row(&mut self, y: usize) {
-        let axis = &self.octave.axes[1];
-        let row = axis.cell[y];
+        let row = self.octave.axes[1].cell[y];
         if self.row != Some(row) {
             if self.row.is_none_or(|before| before + 1 != row) {
                 self.blend_lattice(row);
@@ -148,32 +216,12 @@ impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
             self.expand();
             self.row = Some(row);
         }
-        let v = axis.curve[y];
-        let factors = [1.0 - v, (1.0 - v) * axis.from_low[y], v, v * axis.from_high[y]];
-        for (factor, number) in self.factors.iter_mut().zip(factors) {
-            *factor = V::splat(number);
-        }
-    }
-
-    /// Adds the octave at the points of the row; the first one begins the sums.
-    #[inline(always)]
-    fn add<const FIRST: bool>(&self, combine: Combine, partials: &mut [Partial<V, 1>]) {
-        let [a, b, c, d] = self.factors;
-        let (frequency, amplitude) = (self.octave.frequency, self.octave.amplitude);
-        for (partial, [p0, q0, p1, q1]) in partials.iter_mut().zip(&self.columns) {
-            let value = (*p0 * a + *q0 * b) + (*p1 * c + *q1 * d);
-            let noise = Dual { value, gradient: [V::constant(0.0)] };
-            if FIRST {
-                *partial = Partial::new();
-            }
-            partial.add::<false>(combine, frequency, amplitude, combine.fold::<V, 1, false>(noise));
-        }
     }
 
     /// The contributions of a row of lattice points, blended along z.
     #[inline(always)]
     fn blend_lattice(&mut self, row: usize) {
-        self.hash_row(row);
+        let at = self.hash_row(row);
         let axis = &self.octave.axes[2];
         let w = axis.curve[self.plane];
         let (low, high) = (V::splat(1.0 - w), V::splat(w));
@@ -182,7 +230,7 @@ impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
         let (basis, tables) = (self.octave.noise.basis(), self.octave.noise.tables());
         let Lattice { bx, by, c } = &mut self.lattice;
         let outputs = bx.as_chunks_mut().0.iter_mut().zip(by.as_chunks_mut().0).zip(c.as_chunks_mut().0);
-        let hashes = self.below.as_chunks().0.iter().zip(self.above.as_chunks().0);
+        let hashes = self.below[at..].as_chunks().0.iter().zip(self.above[at..].as_chunks().0);
         for (((bx, by), c), (below, above)) in outputs.zip(hashes) {
             let (below, above) = (V::load_int(below), V::load_int(above));
             if basis == Basis::Lattice || basis == Basis::Value {
@@ -197,28 +245,53 @@ impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
         }
     }
 
-    /// The hashes of a row of lattice points, below and above z: for improved noise its edge codes.
+    /// The hashes of a row of lattice points, below and above z (for improved noise its edge codes): where they begin.
     #[inline(always)]
-    fn hash_row(&mut self, row: usize) {
+    fn hash_row(&mut self, row: usize) -> usize {
         let [_, y, z] = &self.octave.axes;
         let cell = z.cell[self.plane];
+        let slot = row % self.hashed.len();
+        let at = slot * self.room;
+        if self.hashed[slot] == Some((cell, row)) {
+            return at;
+        }
+        self.hashed[slot] = Some((cell, row));
         let (y, low, high) = (y.lattice[row], z.lattice[cell], z.lattice[cell + 1]);
         let (basis, tables) = (self.octave.noise.basis(), self.octave.noise.tables());
-        let outputs = self.below.iter_mut().zip(&mut self.above);
+        let outputs = self.below[at..].as_chunks_mut().0.iter_mut().zip(self.above[at..].as_chunks_mut().0);
+        let hashes = self.hashes.as_chunks().0;
         if basis == Basis::Value {
             let [y, low, high] = [(1, y), (2, low), (2, high)].map(|(axis, c)| c.wrapping_mul(hash::FACTORS[axis]));
-            for ((below, above), x) in outputs.zip(&self.hashes) {
-                (*below, *above) = (x ^ y ^ low, x ^ y ^ high);
+            for ((below, above), x) in outputs.zip(hashes) {
+                let column = V::load_int(x) ^ V::Int::constant(y);
+                V::store_int(column ^ V::Int::constant(low), below);
+                V::store_int(column ^ V::Int::constant(high), above);
             }
-            return;
+            return at;
         }
-        let last = if basis == Basis::Improved { &tables.edges.bytes } else { &tables.permutation.bytes };
-        let table = &tables.permutation.bytes;
-        for ((below, above), x) in outputs.zip(&self.hashes) {
-            let column = table[((x + y) & 255) as usize];
-            *below = i32::from(last[usize::from(column.wrapping_add(low as u8))]);
-            *above = i32::from(last[usize::from(column.wrapping_add(high as u8))]);
+        if !V::TABLES_IN_REGISTERS {
+            let last = if basis == Basis::Improved { &tables.edges.bytes } else { &tables.permutation.bytes };
+            let rows = self.below[at..].iter_mut().zip(&mut self.above[at..]).zip(&self.hashes);
+            for ((below, above), x) in rows {
+                let column = tables.permutation.bytes[((x + y) & 255) as usize];
+                *below = i32::from(last[usize::from(column.wrapping_add(low as u8))]);
+                *above = i32::from(last[usize::from(column.wrapping_add(high as u8))]);
+            }
+            return at;
         }
+        for ((below, above), x) in outputs.zip(hashes) {
+            let column = V::lookup_pair(&tables.permutation, V::load_int(x) + V::Int::constant(y)).0;
+            for (z, hashes) in [(low, below), (high, above)] {
+                let index = column + V::Int::constant(z);
+                let hash = if basis == Basis::Improved {
+                    V::lookup(&tables.edges, index)
+                } else {
+                    V::lookup_pair(&tables.permutation, index).0 & V::Int::constant(255)
+                };
+                V::store_int(hash, hashes);
+            }
+        }
+        at
     }
 
     /// P and Q of the upper row, from the lattice to the points.

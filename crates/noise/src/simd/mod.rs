@@ -366,11 +366,14 @@ fn map_avx512<K: Outputs<D, N>, const D: usize, const N: usize>(
 
 /// A number made of `LANES` lanes.
 pub(crate) trait Vector<const LANES: usize>: Real {
+    /// Whether tables of bytes are read from registers, so that many reads at once are fast.
+    const TABLES_IN_REGISTERS: bool = false;
     fn load(lanes: &[f32; LANES]) -> Self;
     fn store(self, lanes: &mut [f32; LANES]);
     /// The same number in every lane.
     fn splat(value: f32) -> Self;
     fn load_int(lanes: &[i32; LANES]) -> Self::Int;
+    fn store_int(integers: Self::Int, lanes: &mut [i32; LANES]);
     /// The window's numbers at these places, which are below `LANES`.
     fn expand(window: &[f32; LANES], places: Self::Int) -> Self;
 }
@@ -391,6 +394,10 @@ impl Vector<1> for f32 {
     #[inline(always)]
     fn load_int(lanes: &[i32; 1]) -> Self::Int {
         Self::Int::constant(lanes[0])
+    }
+    #[inline(always)]
+    fn store_int(integers: Self::Int, lanes: &mut [i32; 1]) {
+        lanes[0] = integers.0;
     }
     #[inline(always)]
     fn expand(window: &[f32; 1], _places: Self::Int) -> Self {

@@ -177,6 +177,10 @@ impl Vector<4> for F32x4 {
         I32x4(unsafe { _mm_loadu_si128(lanes.as_ptr().cast()) })
     }
     #[inline(always)]
+    fn store_int(integers: I32x4, lanes: &mut [i32; 4]) {
+        unsafe { _mm_storeu_si128(lanes.as_mut_ptr().cast(), integers.0) }
+    }
+    #[inline(always)]
     fn expand(window: &[f32; 4], places: I32x4) -> Self {
         let [a, b, c, d] = places.indices().map(|place| window[place % 4]);
         F32x4(unsafe { _mm_setr_ps(a, b, c, d) })

@@ -155,6 +155,14 @@ impl Sum {
         self.evaluate::<R, D, false>(point, Some(footprint)).value
     }
 
+    /// [`Sum::value_filtered`], and its exact derivative along each axis, where the footprint stays the same.
+    #[inline]
+    pub fn value_and_gradient_filtered<R: Real, const D: usize>(&self, point: [R; D], footprint: R) -> (R, [R; D]) {
+        let Dual { value, gradient } =
+            self.value_filtered(Dual::point(point), Dual { value: footprint, gradient: [R::constant(0.0); D] });
+        (value, gradient)
+    }
+
     #[inline(always)]
     fn evaluate<R: Real, const D: usize, const G: bool>(&self, point: [R; D], footprint: Option<R>) -> Dual<R, D> {
         let fade = Fade::of(self.noise.basis(), self.combine.folds(), D);

@@ -237,6 +237,10 @@ impl Vector<8> for F32x8 {
         I32x8(unsafe { _mm256_loadu_si256(lanes.as_ptr().cast()) })
     }
     #[inline(always)]
+    fn store_int(integers: I32x8, lanes: &mut [i32; 8]) {
+        unsafe { _mm256_storeu_si256(lanes.as_mut_ptr().cast(), integers.0) }
+    }
+    #[inline(always)]
     fn expand(window: &[f32; 8], places: I32x8) -> Self {
         F32x8(unsafe { _mm256_permutevar8x32_ps(_mm256_loadu_ps(window.as_ptr()), places.0) })
     }

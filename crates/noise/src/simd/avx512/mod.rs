@@ -245,6 +245,7 @@ static CHOICES: [[[Words; 2]; 2]; 2] = {
 };
 
 impl Vector<16> for F32x16 {
+    const TABLES_IN_REGISTERS: bool = true;
     #[inline(always)]
     fn load(lanes: &[f32; 16]) -> Self {
         F32x16(unsafe { _mm512_loadu_ps(lanes.as_ptr()) })
@@ -260,6 +261,10 @@ impl Vector<16> for F32x16 {
     #[inline(always)]
     fn load_int(lanes: &[i32; 16]) -> I32x16 {
         I32x16(unsafe { _mm512_loadu_si512(lanes.as_ptr().cast()) })
+    }
+    #[inline(always)]
+    fn store_int(integers: I32x16, lanes: &mut [i32; 16]) {
+        unsafe { _mm512_storeu_si512(lanes.as_mut_ptr().cast(), integers.0) }
     }
     #[inline(always)]
     fn expand(window: &[f32; 16], places: I32x16) -> Self {
