@@ -302,7 +302,11 @@ impl Noise {
             Basis::Classic => classic::evaluate::<R, D, G>(&self.tables, point, &period),
             Basis::Lattice => lattice::evaluate::<R, D, G>(&self.tables, point, &period),
             Basis::Value => value::evaluate::<R, D, G>(&self.tables, point, &period),
-            Basis::Simplex => simplex::evaluate::<R, D, G>(&self.tables, point, &period),
+            Basis::Simplex if self.period == [0.0; 4] => simplex::evaluate::<R, D, G>(&self.tables, point),
+            Basis::Simplex => {
+                let stretched = period.map(|cells| simplex::stretched(D, cells));
+                simplex::evaluate_periodic::<R, D, G>(&self.tables, point, &period, &stretched)
+            }
             Basis::Cellular => cellular::evaluate::<R, D, G>(&self.tables, &self.cellular, point, &period),
             Basis::White => white::evaluate::<R, D>(&self.tables, point, &period),
         }

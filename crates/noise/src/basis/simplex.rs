@@ -23,47 +23,53 @@ const SCALE: f64 = 76.88;
 const SCALE_FOUR: f64 = 60.0;
 
 /// The lattice: cubes, compressed along their diagonal.
-#[derive(Clone, Copy)]
 struct Shape {
     /// What times the sum of a point's coordinates, added to each, makes the corners whole numbers; and back.
     skew: f64,
     unskew: f64,
-    /// The corners' coordinates, with a period, are multiples of one over this; and periods multiples of that, in units.
+    /// With a period, the corners' coordinates are multiples of one over `parts`, and periods multiples of `units`.
     parts: f64,
     units: f64,
 }
 
-const SPACE: Shape = Shape { skew: 1.0 / 3.0, unskew: 1.0 / 6.0, parts: 6.0, units: 3.0 };
+/// The lattice in `n` dimensions, with periods or without.
+const fn shape(n: usize, periodic: bool) -> Shape {
+    match (n, periodic) {
+        (4, true) => Shape { skew: 0.25, unskew: 0.125, parts: 8.0, units: 4.0 },
+        // (√5 − 1)/4 and (5 − √5)/20
+        (4, false) => Shape { skew: 0.309_016_994_374_947_45, unskew: 0.138_196_601_125_010_5, parts: 0.0, units: 0.0 },
+        _ => Shape { skew: 1.0 / 3.0, unskew: 1.0 / 6.0, parts: 6.0, units: 3.0 },
+    }
+}
 
-/// (√5 − 1)/4 and (5 − √5)/20; without periods.
-const FOUR: Shape = Shape { skew: 0.309_016_994_374_947_45, unskew: 0.138_196_601_125_010_5, parts: 0.0, units: 0.0 };
-
-const FOUR_PERIODIC: Shape = Shape { skew: 0.25, unskew: 0.125, parts: 8.0, units: 4.0 };
+/// How many units fit a period; 0 where there is none.
+pub(crate) fn stretched(dimensions: usize, period: f64) -> f64 {
+    let units = shape(dimensions, true).units;
+    if period == 0.0 { 0.0 } else { units * (period / units).round().max(1.0) }
+}
 
 /// The noise at a point; below three dimensions the other coordinates are 0.
 #[inline(always)]
-pub(crate) fn evaluate<R: Real, const D: usize, const G: bool>(
+pub(crate) fn evaluate<R: Real, const D: usize, const G: bool>(tables: &Tables, point: [R; D]) -> Dual<R, D> {
+    sum::<R, D, G, false>(tables, point, &[0.0; 4])
+}
+
+/// The noise at a point, with periods, of which there is one at least.
+#[inline(always)]
+pub(crate) fn evaluate_periodic<R: Real, const D: usize, const G: bool>(
     tables: &Tables,
     point: [R; D],
     period: &Period,
+    stretched: &Period,
 ) -> Dual<R, D> {
-    let zero = R::constant(0.0);
-    let mut padded = [zero; 4];
-    padded[..D].copy_from_slice(&point);
-    if *period == [0.0; 4] {
-        let shape = if D == 4 { &FOUR } else { &SPACE };
-        return sum::<R, D, G>(tables, padded, shape, &[0.0; 4]);
-    }
-    let shape = if D == 4 { &FOUR_PERIODIC } else { &SPACE };
-    let (mut stretch, mut stretched) = ([1.0; 4], [0.0; 4]);
+    let (mut point, mut stretch) = (point, [1.0; 4]);
     for axis in 0..D {
         if period[axis] != 0.0 {
-            stretched[axis] = shape.units * (period[axis] / shape.units).round().max(1.0);
             stretch[axis] = stretched[axis] / period[axis];
-            padded[axis] = wrap(point[axis], period[axis]) * R::constant(stretch[axis]);
+            point[axis] = wrap(point[axis], period[axis]) * R::constant(stretch[axis]);
         }
     }
-    let mut sample = sum::<R, D, G>(tables, padded, shape, &stretched);
+    let mut sample = sum::<R, D, G, true>(tables, point, stretched);
     for axis in 0..if G { D } else { 0 } {
         sample.gradient[axis] = sample.gradient[axis] * R::constant(stretch[axis]);
     }
@@ -72,19 +78,18 @@ pub(crate) fn evaluate<R: Real, const D: usize, const G: bool>(
 
 /// The corners' parts, scaled.
 #[inline(always)]
-fn sum<R: Real, const D: usize, const G: bool>(
+fn sum<R: Real, const D: usize, const G: bool, const P: bool>(
     tables: &Tables,
-    point: [R; 4],
-    shape: &Shape,
+    point: [R; D],
     period: &Period,
 ) -> Dual<R, D> {
-    let (sum, gradient) = if D == 4 {
-        sum_four::<R, G>(tables, point, shape, period)
-    } else {
-        sum_three::<R, G>(tables, point, shape, period)
-    };
+    let zero = R::constant(0.0);
+    let mut padded = [zero; 4];
+    padded[..D].copy_from_slice(&point);
+    let (sum, gradient) =
+        if D == 4 { sum_four::<R, G, P>(tables, padded, period) } else { sum_three::<R, G, P>(tables, padded, period) };
     let scale = R::constant(if D == 4 { SCALE_FOUR } else { SCALE });
-    let mut sample = Dual { value: plus_zero(sum * scale), gradient: [R::constant(0.0); D] };
+    let mut sample = Dual { value: plus_zero(sum * scale), gradient: [zero; D] };
     if G {
         for (part, unscaled) in sample.gradient.iter_mut().zip(gradient) {
             *part = plus_zero(unscaled * scale);
@@ -93,27 +98,27 @@ fn sum<R: Real, const D: usize, const G: bool>(
     sample
 }
 
-/// A simplex: its first corner, and the point as seen from there.
-struct Base<'a, R: Real> {
-    shape: &'a Shape,
+/// A simplex: its first corner, and the point as seen from there. `P`: with periods.
+struct Base<'a, R: Real, const P: bool> {
     seed: i32,
     period: &'a Period,
     /// The corner's coordinates in the skewed space.
     cell: [R; 4],
-    /// Those and the seed, mixed for [`hash::bits`] (without a period).
+    /// Those and the seed, mixed for [`hash::bits`] (without periods).
     mixed: R::Int,
     /// What a step along each axis changes of that.
     changes: [R::Int; 4],
     offset: [R; 4],
 }
 
-impl<'a, R: Real> Base<'a, R> {
+impl<'a, R: Real, const P: bool> Base<'a, R, P> {
     /// The one around a point of N dimensions.
     #[inline(always)]
-    fn new<const N: usize>(seed: i32, point: [R; 4], shape: &'a Shape, period: &'a Period) -> Self {
+    fn new<const N: usize>(seed: i32, point: [R; 4], period: &'a Period) -> Self {
+        let Shape { skew, unskew, .. } = const { shape(N, P) };
         let (mut cell, mut offset, mut hashes) = (point, point, [R::Int::constant(0); 4]);
         let mut changes = hashes;
-        let shift = total::<R, N>(&point) * R::constant(shape.skew);
+        let shift = total::<R, N>(&point) * R::constant(skew);
         for axis in 0..N {
             cell[axis] = (point[axis] + shift).floor();
             hashes[axis] = cell[axis].to_int() * R::Int::constant(hash::FACTORS[axis]);
@@ -126,11 +131,11 @@ impl<'a, R: Real> Base<'a, R> {
             // What the step to the next cell changes.
             changes[axis] = (hashes[axis] + R::Int::constant(hash::FACTORS[axis])) ^ hashes[axis];
         }
-        let shift = total::<R, N>(&cell) * R::constant(shape.unskew);
+        let shift = total::<R, N>(&cell) * R::constant(unskew);
         for axis in 0..N {
             offset[axis] = point[axis] - (cell[axis] - shift);
         }
-        Base { shape, seed, period, cell, mixed, changes, offset }
+        Base { seed, period, cell, mixed, changes, offset }
     }
 
     /// The random bits of the corner that is a step away along the axes of the mask, and the point as seen from there.
@@ -138,7 +143,7 @@ impl<'a, R: Real> Base<'a, R> {
     #[inline(always)]
     fn corner<const N: usize>(&self, steps: [R::Mask; 4], number: usize) -> (R::Int, [R; 4]) {
         let (mut mixed, mut from) = (self.mixed, self.offset);
-        let (zero, stay) = (R::Int::constant(0), number as f64 * self.shape.unskew);
+        let (zero, stay) = (R::Int::constant(0), number as f64 * const { shape(N, P).unskew });
         for axis in 0..if number == 0 { 0 } else { N } {
             let (here, there) = (R::constant(stay), R::constant(stay - 1.0));
             if number == N {
@@ -149,7 +154,7 @@ impl<'a, R: Real> Base<'a, R> {
                 from[axis] = from[axis] + R::select(steps[axis], there, here);
             }
         }
-        if *self.period != [0.0; 4] {
+        if P {
             mixed = self.mixed_within_period::<N>(steps, number);
         }
         (hash::bits::<R>(mixed), from)
@@ -163,7 +168,7 @@ impl<'a, R: Real> Base<'a, R> {
             let next = corner[axis] + R::constant(1.0);
             corner[axis] = if number == N { next } else { R::select(steps[axis], next, corner[axis]) };
         }
-        let (sum, parts) = (total::<R, N>(&corner), self.shape.parts);
+        let (sum, parts) = (total::<R, N>(&corner), const { shape(N, P).parts });
         let mut mixed = R::Int::constant(self.seed);
         for axis in 0..N {
             let coordinate = wrap(corner[axis] * R::constant(parts) - sum, self.period[axis] * parts);
@@ -183,8 +188,8 @@ fn total<R: Real, const N: usize>(parts: &[R; 4]) -> R {
 }
 
 #[inline(always)]
-fn sum_three<R: Real, const G: bool>(tables: &Tables, point: [R; 4], shape: &Shape, period: &Period) -> (R, [R; 4]) {
-    let base = Base::new::<3>(tables.hash_seed, point, shape, period);
+fn sum_three<R: Real, const G: bool, const P: bool>(tables: &Tables, point: [R; 4], period: &Period) -> (R, [R; 4]) {
+    let base = Base::<R, P>::new::<3>(tables.hash_seed, point, period);
     // From the first corner to the last one goes one step along each axis, along the axis of the largest offset first.
     let [x, y, z, _] = base.offset;
     let (yx, zx, zy) = (x.less(y), x.less(z), y.less(z));
@@ -206,9 +211,9 @@ fn sum_three<R: Real, const G: bool>(tables: &Tables, point: [R; 4], shape: &Sha
 }
 
 #[inline(always)]
-fn sum_four<R: Real, const G: bool>(tables: &Tables, point: [R; 4], shape: &Shape, period: &Period) -> (R, [R; 4]) {
+fn sum_four<R: Real, const G: bool, const P: bool>(tables: &Tables, point: [R; 4], period: &Period) -> (R, [R; 4]) {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
-    let base = Base::new::<4>(tables.hash_seed, point, shape, period);
+    let base = Base::<R, P>::new::<4>(tables.hash_seed, point, period);
     // Along which axes is the offset larger than along how many others?
     let mut rank = [zero; 4];
     for low in 0..4 {
