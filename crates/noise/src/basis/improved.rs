@@ -75,14 +75,6 @@ pub(crate) fn blend_codes<R: Real, const D: usize, const G: bool>(
     blend::<R, D, G>(values, if G { Some(slopes) } else { None }, &Curve::quintic(&offset))
 }
 
-/// The blend of what the eight corners of a cell in space contribute.
-#[inline(always)]
-pub(crate) fn blend_dots<R: Real>(dots: [R; 8], offset: [R; 3]) -> R {
-    let mut values = [dots[0]; 16];
-    values[..8].copy_from_slice(&dots);
-    blend::<R, 3, false>(values, None, &Curve::quintic(&offset)).value
-}
-
 /// The offset from a corner. (D entries, and one more to name.)
 #[inline(always)]
 fn from_corner<R: Real, const D: usize>(offset: &[R; D], corner: usize) -> [R; 4] {

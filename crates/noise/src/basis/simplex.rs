@@ -70,8 +70,10 @@ pub(crate) fn evaluate_periodic<R: Real, const D: usize, const G: bool>(
         }
     }
     let mut sample = sum::<R, D, G, true>(tables, point, stretched);
-    for axis in 0..if G { D } else { 0 } {
-        sample.gradient[axis] = sample.gradient[axis] * R::constant(stretch[axis]);
+    if G {
+        for (part, stretch) in sample.gradient.iter_mut().zip(stretch) {
+            *part = *part * R::constant(stretch);
+        }
     }
     sample
 }
@@ -170,8 +172,8 @@ impl<'a, R: Real, const P: bool> Base<'a, R, P> {
         }
         let (sum, parts) = (total::<R, N>(&corner), const { shape(N, P).parts });
         let mut mixed = R::Int::constant(self.seed);
-        for axis in 0..N {
-            let coordinate = wrap(corner[axis] * R::constant(parts) - sum, self.period[axis] * parts);
+        for (axis, &corner) in corner[..N].iter().enumerate() {
+            let coordinate = wrap(corner * R::constant(parts) - sum, self.period[axis] * parts);
             mixed = mixed ^ (coordinate.to_int() * R::Int::constant(hash::FACTORS[axis]));
         }
         mixed

@@ -9,8 +9,7 @@ use std::arch::x86_64::*;
 
 use super::{F32x8, I32x8, chosen};
 use crate::basis::Tables;
-use crate::basis::corners::Corners;
-use crate::basis::improved::blend_dots;
+use crate::basis::corners::{Corners, Curve};
 use crate::number::{Dual, Integer, Real};
 use crate::simd::pipeline::{self, ABSOLUTE, ALONE, Halves, Octave, PLAIN, Point, Sums};
 use crate::simd::{Terms, Vector};
@@ -45,7 +44,7 @@ pub(in crate::simd) fn sum<const N: usize>(
             for (cells, numbers) in cells.iter_mut().zip(point) {
                 find_cells::<PLAIN>(octave.frequency, numbers, &mut cells.0[0]);
             }
-            hash::<N>(tables, &cells, 0, &mut codes);
+            hash::<N, 0, LANES>(tables, &cells, 0, &mut codes);
             if terms.absolute {
                 add_vector::<ABSOLUTE, LANES, N>(&codes.0[0], &octave, point, &mut sums, 0);
             } else {
@@ -82,7 +81,7 @@ impl Halves<STEP> for Staged<'_> {
         // SAFETY, here and below: the machine has AVX2.
         unsafe { find_step_cells::<PLAIN>(frequency, point, &mut cells) };
         for i in 0..VECTORS {
-            hash::<N>(self.0, &cells, i, &mut codes.stages[0]);
+            hash::<N, 0, LANES>(self.0, &cells, i, &mut codes.stages[0]);
         }
         codes
     }
@@ -101,8 +100,25 @@ impl Halves<STEP> for Staged<'_> {
         let [even, odd] = &mut codes.stages;
         let (current, next) = if codes.current == 0 { (&*even, odd) } else { (&*odd, even) };
         for i in 0..VECTORS {
-            hash::<N>(self.0, &cells, i, next);
-            unsafe { add_vector::<USE, STEP, N>(&current.0[i], octave, point, &mut sums, i) };
+            if N == 4 {
+                hash::<N, 0, LANES>(self.0, &cells, i, next);
+                unsafe { add_vector::<USE, STEP, N>(&current.0[i], octave, point, &mut sums, i) };
+                continue;
+            }
+            // (Two points are hashed beside each edge of the cell that is blended: in larger pieces, one waits for the other.)
+            let (codes, offset) = unsafe { locate::<USE, STEP>(&current.0[i], octave, point, i) };
+            hash::<N, 0, 2>(self.0, &cells, i, next);
+            let curve = Curve::quintic(&offset).at;
+            let near = unsafe { edge(codes, 0, offset, curve[0]) };
+            hash::<N, 2, 4>(self.0, &cells, i, next);
+            let far = unsafe { edge(codes, 2, offset, curve[0]) };
+            let low = lerp(curve[1], near, far);
+            hash::<N, 4, 6>(self.0, &cells, i, next);
+            let near = unsafe { edge(codes, 4, offset, curve[0]) };
+            hash::<N, 6, 8>(self.0, &cells, i, next);
+            let far = unsafe { edge(codes, 6, offset, curve[0]) };
+            let value = lerp(curve[2], low, lerp(curve[1], near, far));
+            pipeline::add::<F32x8, STEP, LANES, N, USE>(octave, Dual { value, gradient: [value; 3] }, &mut sums, i);
         }
         codes.current = 1 - codes.current;
     }
@@ -148,12 +164,18 @@ fn find_cells<const USE: u8>(frequency: f32, numbers: &[f32; LANES], cells: &mut
     unsafe { _mm256_storeu_si256(cells.as_mut_ptr().cast(), cell) };
 }
 
-/// The codes of the eight points of a vector: for the noise alone the choices of edges, with gradients the edges.
+/// The codes of these points of a vector: for the noise alone the choices of edges, with gradients the edges.
 #[inline(always)]
-fn hash<const N: usize>(tables: &CornerTables, cells: &[Stage; 3], vector: usize, codes: &mut Stage) {
+fn hash<const N: usize, const FROM: usize, const TO: usize>(
+    tables: &CornerTables,
+    cells: &[Stage; 3],
+    vector: usize,
+    codes: &mut Stage,
+) {
     let [x, y, z] = [&cells[0].0[vector], &cells[1].0[vector], &cells[2].0[vector]];
     let of_columns = if N == 4 { &tables.edges } else { &tables.choices };
-    for (lane, code) in codes.0[vector].iter_mut().enumerate() {
+    for lane in FROM..TO {
+        let code = &mut codes.0[vector][lane];
         let code: *mut u32 = code;
         // SAFETY: a reference may be written through. Volatile, or else the compiler makes gathers of the reads.
         unsafe { code.write_volatile(tables.hash(of_columns, [x[lane] as u8, y[lane] as u8, z[lane] as u8])) };
@@ -170,6 +192,23 @@ fn add_vector<const USE: u8, const STEP: usize, const N: usize>(
     sums: &mut Sums<STEP, N>,
     vector: usize,
 ) {
+    let (codes, offset) = locate::<USE, STEP>(codes, octave, point, vector);
+    if N == 4 {
+        return pipeline::add_vector::<F32x8, STEP, LANES, N, USE>(octave, corners(codes), offset, sums, vector);
+    }
+    let value = blend(codes, offset);
+    pipeline::add::<F32x8, STEP, LANES, N, USE>(octave, Dual { value, gradient: [value; 3] }, sums, vector);
+}
+
+/// The codes of eight points, and their offsets in their cells.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn locate<const USE: u8, const STEP: usize>(
+    codes: &[u32; LANES],
+    octave: &Octave,
+    point: Point<STEP>,
+    vector: usize,
+) -> (I32x8, [F32x8; 3]) {
     // SAFETY: there are eight codes.
     let codes = I32x8(unsafe { _mm256_loadu_si256(codes.as_ptr().cast()) });
     let mut offset = [F32x8::constant(0.0); 3];
@@ -177,28 +216,36 @@ fn add_vector<const USE: u8, const STEP: usize, const N: usize>(
         let position = load::<USE>(&point[axis].as_chunks().0[vector], octave.frequency);
         offset[axis] = position - position.floor();
     }
-    if N == 4 {
-        return pipeline::add_vector::<F32x8, STEP, LANES, N, USE>(octave, corners(codes), offset, sums, vector);
-    }
-    let value = blend_dots(dots(codes, offset), offset);
-    pipeline::add::<F32x8, STEP, LANES, N, USE>(octave, Dual { value, gradient: [value; 3] }, sums, vector);
+    (codes, offset)
 }
 
-/// What the corners contribute, from the choices of their edges and the offset in the cell.
+/// The noise, from the choices of the corners' edges and the offset in the cell.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub(super) fn dots(codes: I32x8, [x, y, z]: [F32x8; 3]) -> [F32x8; 8] {
+pub(super) fn blend(codes: I32x8, offset: [F32x8; 3]) -> F32x8 {
+    let [x, y, z] = Curve::quintic(&offset).at;
+    let low = lerp(y, edge(codes, 0, offset, x), edge(codes, 2, offset, x));
+    lerp(z, low, lerp(y, edge(codes, 4, offset, x), edge(codes, 6, offset, x)))
+}
+
+/// What two corners contribute that are neighbours along x: the one of this number (where bit 1 is that of y, bit 2 that of
+/// z) and the next one.
+#[inline]
+#[target_feature(enable = "avx2")]
+fn edge(codes: I32x8, first: usize, [x, y, z]: [F32x8; 3], curve: F32x8) -> F32x8 {
     let (one, sign) = (_mm256_set1_ps(1.0), _mm256_set1_ps(-0.0));
-    let y = [y.0, _mm256_sub_ps(one, y.0)];
     let x = [_mm256_or_ps(x.0, sign), _mm256_or_ps(_mm256_sub_ps(one, x.0), sign)];
-    let z = [_mm256_or_ps(z.0, sign), _mm256_or_ps(_mm256_sub_ps(one, z.0), sign)];
-    let mut dots = [F32x8(one); 8];
-    let codes = corners(codes);
-    for (i, dot) in dots.iter_mut().enumerate() {
-        let (x, y, z) = (x[i & 1], y[i >> 1 & 1], z[i >> 2]);
-        *dot = F32x8(chosen(codes[i].0, _mm256_xor_ps(x, y), y, _mm256_xor_ps(z, y)));
-    }
-    dots
+    let y = if first & 2 == 0 { y.0 } else { _mm256_sub_ps(one, y.0) };
+    let z = _mm256_or_ps(if first & 4 == 0 { z.0 } else { _mm256_sub_ps(one, z.0) }, sign);
+    let (codes, z_or_y) = (corners(codes), _mm256_xor_ps(z, y));
+    let left = chosen(codes[first].0, _mm256_xor_ps(x[0], y), y, z_or_y);
+    let right = chosen(codes[first + 1].0, _mm256_xor_ps(x[1], y), y, z_or_y);
+    lerp(curve, F32x8(left), F32x8(right))
+}
+
+#[inline(always)]
+fn lerp(t: F32x8, a: F32x8, b: F32x8) -> F32x8 {
+    a + t * (b - a)
 }
 
 /// The codes of each corner, from all of them as [`CornerTables::hash`] has them (where the highest bit is that of x).

@@ -4,7 +4,6 @@ use std::arch::x86_64::*;
 
 use super::{F32x8, I32x8, chosen};
 use crate::basis::Tables;
-use crate::basis::improved::blend_dots;
 use crate::number::Real;
 use crate::simd::{LaneTerms, Vector};
 
@@ -77,7 +76,7 @@ fn octaves(tables: &Tables, frequencies: F32x8, count: usize, point: [f32; 3]) -
     let low = _mm_setr_epi32(hash(0), hash(1), hash(2), hash(3));
     let high = if count > 4 { _mm_setr_epi32(hash(4), hash(5), hash(6), hash(7)) } else { _mm_setzero_si128() };
     let codes = I32x8(_mm256_set_m128i(high, low));
-    blend_dots(super::improved::dots(codes, offset), offset) + F32x8::constant(0.0)
+    super::improved::blend(codes, offset) + F32x8::constant(0.0)
 }
 
 /// The codes of the cell's corners in every lane, and the point's offset in the cell.
