@@ -32,7 +32,7 @@ _COMMON: list[tuple[str, Any, str]] = [
         "period",
         None,
         "Repeat exactly after so many cells: a whole number for all axes, or one for each, where 0 leaves an axis without. "
-        "(A sum repeats if its lacunarity is a whole number; simplex noise cannot.)",
+        "(A sum repeats if its lacunarity is a whole number.)",
     ),
     ("gradient", False, "Return (values, gradient), with the exact derivative along each axis, of the shape of the points."),
 ]

@@ -191,7 +191,8 @@ impl Noise {
             if words.clone().next().is_none() {
                 continue;
             }
-            let values = self.line(evaluation, words).map_err(|message| Failure::new(format!("line {number}: {message}")));
+            let values =
+                self.line(evaluation, words).map_err(|message| Failure::new(format!("line {number}: {message}")));
             let values = values.inspect_err(|_| _ = out.flush())?;
             writeln!(out, "{values}")?;
             // Whoever waits for each answer before asking again shall get it.
