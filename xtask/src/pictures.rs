@@ -39,7 +39,7 @@ pub fn bless(filter: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Renders the scenes that lie in `scenes/` itself into `docs/gallery/`, each at its own size. JPEG, because the pictures
+/// Renders the scenes that lie in `scenes/` itself into `docs/gallery/`, each at its own size, and the preview of a baked set. JPEG, because the pictures
 /// are for looking at and the repository keeps every version of them.
 pub fn gallery() -> Result<(), String> {
     let jaspe = build()?;
@@ -49,7 +49,11 @@ pub fn gallery() -> Result<(), String> {
         let picture = gallery.join(case).with_extension("jpg");
         run(Command::new(&jaspe).arg("render").arg(scenes.join(case)).arg("-o").arg(&picture))?;
     }
-    Ok(())
+    // The preview of a baked set, for the page on baking.
+    let set = gallery.join("set");
+    run(Command::new(&jaspe).args(["bake", "organic", "--format", "jpeg", "--preview", "-o"]).arg(&set))?;
+    let moved = fs::rename(set.join("preview.jpg"), gallery.join("bake.jpg"));
+    moved.and_then(|()| fs::remove_dir_all(&set)).map_err(|error| error.to_string())
 }
 
 /// Builds the program as users have it, and says where it is.

@@ -109,6 +109,7 @@ impl fmt::Display for BakeError {
 impl std::error::Error for BakeError {}
 
 /// A bake, ready to run. Immutable.
+#[derive(Debug, Clone)]
 pub struct Bake {
     texture: Texture,
     settings: Settings,
@@ -253,7 +254,7 @@ impl Bake {
     /// The material as the centres of pixels show it: its points are noise cells, it repeats as the maps do, and it has the
     /// octaves that pixels can show. Heights and normals are those of this texture.
     pub fn shown(&self) -> &Texture {
-        self.field.octaves()
+        self.field.shown()
     }
 
     /// The point of the material, in noise cells, at the centre of a pixel; those outside of a map that repeats are in its

@@ -18,6 +18,7 @@ const DIRECTIONS: usize = 7;
 const DISTANCES: usize = 5;
 
 /// The material as pixels of a certain size can show it.
+#[derive(Debug, Clone)]
 pub(crate) struct Field {
     /// For what is averaged over several samples of a pixel.
     fine: Texture,
@@ -77,8 +78,8 @@ impl Field {
         }
     }
 
-    /// The octaves that height and normal have.
-    pub fn octaves(&self) -> &Texture {
+    /// The material with the octaves that height and normal have.
+    pub fn shown(&self) -> &Texture {
         &self.coarse
     }
 
@@ -238,6 +239,7 @@ fn normal([slope, rise]: [f32; 2], convention: NormalConvention) -> [f32; 3] {
 }
 
 /// The display curve's inverse by interpolation: within 1e-7 of the curve, and much sooner.
+#[derive(Debug, Clone)]
 struct DecodeTable(Vec<f32>);
 
 impl DecodeTable {

@@ -1,4 +1,4 @@
-//! A baked material on a ball and a cloth, under a sky, by the project's own renderer.
+//! A baked material on a ball and a cloth, under a sky, by the project's own renderer. Any surface but a plane wears its maps itself.
 
 use std::fmt::Write as _;
 
@@ -38,7 +38,8 @@ pub fn preview(bake: &Bake, [width, height]: [u32; 2], observer: &dyn Observer) 
     debug_assert!(diagnostics.is_empty(), "{diagnostics:?}");
     let compiled = compile(&scene, &loader, &CompileOptions::default()).scene;
     let compiled = compiled.expect("the scene of the preview has no mistakes");
-    Ok(render(&compiled, &RenderOptions::default(), observer)?.0)
+    let options = RenderOptions { threads: Some(rayon::current_num_threads()), ..RenderOptions::default() };
+    Ok(render(&compiled, &options, observer)?.0)
 }
 
 /// Stops as another observer does, and tells it nothing.

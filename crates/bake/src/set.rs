@@ -21,7 +21,7 @@ pub struct SetOptions {
     pub format: MapFormat,
     /// That of the height map.
     pub height_format: MapFormat,
-    /// Whether a rendered preview is added, as `preview.png`.
+    /// Whether a rendered preview is added: `preview.png`, or `preview.jpg` beside JPEG maps.
     pub preview: Preview,
 }
 
@@ -115,8 +115,6 @@ pub struct SetFolder {
 pub(crate) const MANIFEST: &str = "material.json";
 /// The file that lists a gallery.
 pub(crate) const GALLERY: &str = "gallery.json";
-/// The rendered picture of a set.
-const PREVIEW: &str = "preview.png";
 
 impl SetFolder {
     /// Makes sure that the folder can be written, and begins it beside its final place. A set that is there is replaced at the
@@ -273,8 +271,11 @@ pub fn write_set(
     }
     if let Preview::Rendered(size) = options.preview {
         let film = preview(bake, size, &work(total - preview_work, preview_work))?;
-        let png = encode(&film, Format::Png(Depth::Eight)).expect("previews fit PNG");
-        folder.write(PREVIEW, &png)?;
+        let (name, format) = match options.format {
+            MapFormat::Jpeg => ("preview.jpg", Format::Jpeg),
+            _ => ("preview.png", Format::Png(Depth::Eight)),
+        };
+        folder.write(name, &encode(&film, format).expect("previews fit every format"))?;
     }
     let described = manifest::Described { bake, options, height_range };
     for (name, bytes) in gltf::files(bake, options) {

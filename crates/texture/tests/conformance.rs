@@ -2,9 +2,10 @@
 
 #![allow(clippy::disallowed_methods, reason = "our functions are held against the platform's")]
 
+use jaspe_noise::Dual;
 use jaspe_noise::simd::Level;
 use jaspe_texture::declare::{Kind, Value};
-use jaspe_texture::{BuildError, Space, Texture};
+use jaspe_texture::{BuildError, Reliefs, Space, Texture};
 
 fn defaults(name: &str) -> Texture {
     Texture::build(name, &[]).unwrap()
@@ -89,6 +90,70 @@ fn coefficients_are_continuous_across_cells_and_at_negative_coordinates() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn heights_have_no_jumps_and_their_slopes_are_exact() {
+    let points = cube(3000, 4.0);
+    let [x, y, z] = points.each_ref().map(Vec::as_slice);
+    for (name, texture) in variants() {
+        let cells = texture.in_cells([5, 7, 3, 0]).unwrap();
+        for texture in [texture, cells] {
+            let (mut coefficients, mut heights, mut alone) = (vec![0.0; 3000], vec![0.0; 3000], vec![0.0; 3000]);
+            let [mut a, mut b, mut c] = [(); 3].map(|()| vec![0.0; 3000]);
+            let slopes = [&mut a[..], &mut b[..], &mut c[..]];
+            let reliefs = Reliefs { coefficients: &mut coefficients, heights: &mut heights, slopes };
+            texture.reliefs([x, y, z], reliefs);
+            texture.heights([x, y, z], &mut alone);
+            let mut creases = 0;
+            for i in 0..3000 {
+                let point = [x[i], y[i], z[i]];
+                assert_eq!(alone[i], texture.height(point), "{name}");
+                assert_eq!(coefficients[i], texture.value(point), "{name}");
+                assert!((heights[i] - alone[i]).abs() < 1e-5, "{name}");
+                let exact = texture.height(Dual::point(point.map(f64::from)));
+                let off = (0..3).map(|k| (exact.gradient[k] - f64::from([a[i], b[i], c[i]][k])).abs());
+                // At a crease the last digit says which side a point is on.
+                creases += usize::from(off.fold(0.0, f64::max) > 2e-3);
+                // A tiny step changes the height by as much as the slope says: at the edges of wood's rings, too.
+                let step = 1e-7;
+                let moved = texture.height([f64::from(point[0]) + step, f64::from(point[1]), f64::from(point[2])]);
+                assert!((moved - exact.value).abs() < 50.0 * step, "{name} jumps at {point:?}");
+            }
+            assert!(creases < 12, "{name}: {creases}");
+        }
+    }
+}
+
+#[test]
+fn textures_in_cells_repeat_in_four_dimensions() {
+    for (name, texture) in variants() {
+        let texture = texture.in_cells([5, 7, 3, 2]).unwrap();
+        for i in 0..40 {
+            let step = f64::from(i);
+            let point = [0.31 * step, 0.47 * step - 9.0, 0.13 * step, 0.71 * step];
+            let here: f64 = texture.value(point);
+            for (axis, period) in [5.0, 7.0, 3.0, 2.0].into_iter().enumerate() {
+                let mut there = point;
+                there[axis] += period;
+                let off = (texture.value(there) - here).abs();
+                let off = if name.starts_with("wood") { off.min(1.0 - off) } else { off };
+                assert!(off < 1e-9, "{name} along {axis}: {off}");
+            }
+        }
+        let bands = texture.bands(5.0);
+        assert_eq!(bands.is_some(), name.starts_with("marble"));
+        assert!(bands.is_none_or(|bands| (bands - 1.0).abs() < 1e-12), "{bands:?}");
+    }
+}
+
+#[test]
+fn finishes_are_within_their_ranges() {
+    for declaration in Texture::ALL {
+        let finish = defaults(declaration.name).finish();
+        assert!(finish.relief > 0.0 && finish.tile > 0.0 && finish.emission >= 0.0);
+        assert!(finish.roughness.iter().all(|end| (0.0..=1.0).contains(end)));
     }
 }
 

@@ -92,7 +92,7 @@ pub struct Bake {
     #[arg(long, value_name = "N", default_value_t = 1, requires = "frames", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pace: u32,
 
-    /// Render the material on a ball and a cloth under a sky, as preview.png
+    /// Render the material on a ball and a cloth under a sky: preview.png, or preview.jpg beside JPEG maps
     #[arg(long)]
     preview: bool,
 
