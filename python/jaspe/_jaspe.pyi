@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._errors import Diagnostic
 from ._maps import Maps
+from ._progress import Progress
 
 __all__ = ["Image", "Scene", "Texture", "__version__", "_texture", "declarations", "noise"]
 
@@ -114,7 +115,7 @@ class Texture:
         frames: Optional[int] = None,
         cells: int = 1,
         frame: int = 0,
-        progress: Optional[Callable[[int, int], object]] = None,
+        progress: Progress = None,
     ) -> Maps: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     def __eq__(self, other: object, /) -> bool: ...

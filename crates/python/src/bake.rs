@@ -25,8 +25,13 @@ pub fn bake<'py>(
         return Err(value_error(format!("frame: expected a number from 0 to {last}, found {frame}")));
     }
     let (tile, pool) = (bake.tile(), work::pool()?);
-    let arrays = interruptible(py, progress, move |watch| pool.install(|| bake.arrays(frame, watch)))?;
-    let arrays = arrays.map_err(|_| PyRuntimeError::new_err("the bake was stopped"))?;
+    let following = py.import(intern!(py, "jaspe._progress"))?.getattr(intern!(py, "following"))?;
+    let following = following.call1((progress, "baking"))?;
+    let report = following.call_method0(intern!(py, "__enter__"))?;
+    let report = if report.is_none() { None } else { Some(&report) };
+    let arrays = interruptible(py, report, move |watch| pool.install(|| bake.arrays(frame, watch)));
+    following.call_method1(intern!(py, "__exit__"), (py.None(), py.None(), py.None()))?;
+    let arrays = arrays?.map_err(|_| PyRuntimeError::new_err("the bake was stopped"))?;
     let [height, width] = [arrays.height as usize, arrays.width as usize];
     let maps = PyDict::new(py);
     for map in arrays.maps {

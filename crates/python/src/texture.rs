@@ -155,8 +155,7 @@ impl Texture {
     ///
     /// `tile` is the side in units of the texture, by default what shows the material well. Green points up in a normal map
     /// of OpenGL ("gl") and down in one of DirectX ("dx"). `frames` makes it one of a sequence that returns to its beginning
-    /// after `cells` noise cells of time. Normals come from exact derivatives. `progress` is called with what is done and
-    /// the total.
+    /// after `cells` noise cells of time. Normals come from exact derivatives. `progress` is as for `Scene.render`.
     #[pyo3(signature = (
         size = 1024, maps = None, *, tile = None, normal = "gl", frames = None, cells = 1, frame = 0, progress = None
     ))]
