@@ -12,6 +12,7 @@ __all__ = ["Image", "Scene", "Texture", "__version__", "_texture", "declarations
 
 __version__: str
 
+_Surface = Literal["plane", "sphere", "cube", "cylinder"]
 # <maps>
 _Map = Literal["color", "height", "normal", "roughness", "ao", "emission"]
 # </maps>
@@ -111,12 +112,31 @@ class Texture:
         maps: Optional[Sequence[_Map]] = None,
         *,
         tile: Optional[float] = None,
+        surface: _Surface = "plane",
+        mesh: Union[str, os.PathLike[str], None] = None,
         normal: Literal["gl", "dx"] = "gl",
         frames: Optional[int] = None,
-        cells: int = 1,
+        pace: int = 1,
         frame: int = 0,
         progress: Progress = None,
     ) -> Maps: ...
+    def bake_set(
+        self,
+        folder: Union[str, os.PathLike[str]],
+        size: int = 1024,
+        maps: Optional[Sequence[_Map]] = None,
+        *,
+        tile: Optional[float] = None,
+        surface: _Surface = "plane",
+        mesh: Union[str, os.PathLike[str], None] = None,
+        normal: Literal["gl", "dx"] = "gl",
+        frames: Optional[int] = None,
+        pace: int = 1,
+        format: Literal["png", "exr", "jpg", "webp"] = "png",
+        bits: Optional[Literal[8, 16, 32]] = None,
+        preview: bool = False,
+        progress: Progress = None,
+    ) -> list[str]: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     def __eq__(self, other: object, /) -> bool: ...
     # <declared>

@@ -197,7 +197,11 @@ class Shaders(Mapping[str, "Shader"]):
         self._kind = kind
 
     def _names(self) -> dict[str, str]:
-        return dict(reversed(getattr(self._native, self._kind)()))
+        names: dict[str, str] = {}
+        for name, kind in getattr(self._native, self._kind)():
+            # Of two with the same name, the first one counts.
+            names.setdefault(name, kind)
+        return names
 
     def __getitem__(self, name: str) -> Shader:
         names = self._names()
@@ -207,7 +211,7 @@ class Shaders(Mapping[str, "Shader"]):
         return Shader(self._native, name, names[name])
 
     def __iter__(self) -> Iterator[str]:
-        return iter(dict.fromkeys(name for name, _ in getattr(self._native, self._kind)()))
+        return iter(self._names())
 
     def __len__(self) -> int:
         return len(self._names())

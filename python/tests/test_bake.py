@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from pathlib import Path
 from typing import Any, Callable
 
 import numpy as np
@@ -35,6 +36,7 @@ def test_maps_tile(name: str) -> None:
 def test_settings_reach_the_bake() -> None:
     texture = jaspe.Texture("marble", seed=4)
     assert set(texture.bake(64)) == {"color", "height", "normal", "roughness", "ao"}
+    assert "emission" in jaspe.Texture("fire").bake(64)
     gl, dx = (texture.bake(64, ["normal"], normal=normal)["normal"] for normal in ("gl", "dx"))
     assert np.allclose(gl[..., 1], 1 - dx[..., 1], atol=1e-6) and np.array_equal(gl[..., 0], dx[..., 0])
     small, large = (texture.bake(128, ["color"], tile=tile) for tile in (1, 4))
@@ -48,6 +50,53 @@ def test_settings_reach_the_bake() -> None:
     assert np.array_equal(again["color"], maps["color"]) and again.height_range == maps.height_range
 
 
+def files(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({}, []),
+        ({"format": "exr", "surface": "sphere", "normal": "dx"}, ["--format", "exr", "--surface", "sphere", "--normal", "dx"]),
+        ({"frames": 2, "pace": 3, "maps": ["color"]}, ["--frames", "0..2", "--pace", "3", "--maps", "color"]),
+        ({"bits": 16, "tile": 1.5}, ["--bits", "16", "--tile", "1.5"]),
+    ],
+)
+def test_sets_are_those_of_the_command_line(
+    options: dict[str, Any], words: list[str], command: Callable[..., str], tmp_path: Path
+) -> None:
+    command("bake", "marble", "--size", 160, "--seed", 5, "-o", tmp_path / "theirs", "--quiet", *words)
+    names = jaspe.Texture("marble", seed=5).bake_set(tmp_path / "ours", 160, **options)
+    ours, theirs = files(tmp_path / "ours"), files(tmp_path / "theirs")
+    assert set(names) == set(ours) and ours == theirs and "material.json" in ours
+
+
+def test_arrays_are_those_of_the_files(tmp_path: Path) -> None:
+    pillow = pytest.importorskip("PIL.Image")
+    texture = jaspe.Texture("wood", seed=2)
+    texture.bake_set(tmp_path / "set", 64, ["color"])
+    (path,) = (tmp_path / "set").glob("*color*.png")
+    bytes_of_file = np.asarray(pillow.open(path))
+    assert np.abs(texture.bake(64, ["color"])["color"] * 255 - bytes_of_file).max() <= 0.5001
+
+
+def test_surfaces_have_their_own_shapes() -> None:
+    assert jaspe.Texture("marble").bake(256, ["color"], surface="sphere")["color"].shape == (128, 256, 3)
+    assert jaspe.Texture("marble").bake(256, ["height"], surface="cube")["height"].shape == (192, 256)
+
+
+def test_other_files_are_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "letter.txt").write_text("dear")
+    with pytest.raises(OSError, match="letter.txt"):
+        jaspe.Texture("marble").bake_set(tmp_path, 64)
+    with pytest.raises(OSError, match="cannot write"):
+        jaspe.Texture("marble").bake_set(tmp_path / "nowhere" / "set", 64)
+    with pytest.raises(ValueError, match="bits: 32 does not go with"):
+        jaspe.Texture("marble").bake_set(tmp_path / "set", 64, bits=32)
+    assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [
@@ -57,6 +106,7 @@ def test_settings_reach_the_bake() -> None:
         (lambda t: t.bake(64, ["color", "color"]), "twice"),
         (lambda t: t.bake(64, tile=-1), "tile"),
         (lambda t: t.bake(64, normal="gd"), '"gl", "dx"'),
+        (lambda t: t.bake(64, surface="torus"), '"plane", "sphere"'),
         (lambda t: t.bake(64, frames=3, frame=3), "frame: expected a number from 0 to 2"),
     ],
 )

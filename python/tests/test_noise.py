@@ -65,6 +65,8 @@ def test_strides_and_batches_leave_no_trace(name: str, dimensions: int) -> None:
         "reversed": (points[::-1], values[::-1]),
         "every third": (points[::3], values[::3]),
         "planes": (np.moveaxis(np.ascontiguousarray(np.moveaxis(cube, -1, 0)), 0, -1), values.reshape(10, 20, 25)),
+        "a part of planes": (np.ascontiguousarray(np.moveaxis(cube, -1, 0)).transpose(1, 2, 3, 0)[:, ::2], values.reshape(10, 20, 25)[:, ::2]),
+        "crossed": (np.ascontiguousarray(cube.transpose(1, 0, 2, 3)).transpose(1, 0, 2, 3), values.reshape(10, 20, 25)),
         "turned": (turned, values.reshape(10, 20, 25).transpose(2, 0, 1)),
         "fortran": (np.asfortranarray(cube), values.reshape(10, 20, 25)),
         "foreign bytes": (points.astype(">f4"), values),

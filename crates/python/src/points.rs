@@ -162,7 +162,7 @@ impl<T: Copy + Default, const D: usize> Default for Room<T, D> {
     }
 }
 
-/// Points in rows, each of one stride: all in one row if they lie one after the other.
+/// Points in rows, each of one stride, as long as they can be.
 struct Rows<'a, T, const D: usize> {
     view: ArrayViewD<'a, T>,
     row_length: usize,
@@ -173,11 +173,18 @@ impl<'a, T: Copy + Default, const D: usize> Rows<'a, T, D> {
     fn new(points: ArrayViewD<'a, T>) -> Self {
         let point_count = points.len() / D;
         let is_standard = points.is_standard_layout() && point_count > 0;
-        let view = match points.to_slice().filter(|_| is_standard) {
+        let mut view = match points.to_slice().filter(|_| is_standard) {
             Some(numbers) => ArrayView2::from_shape((point_count, D), numbers).expect("as many numbers").into_dyn(),
             None if points.ndim() == 1 => points.insert_axis(Axis(0)),
             None => points,
         };
+        // Axes that lie one after the other make longer rows.
+        let inner = view.ndim() - 2;
+        for axis in (0..inner).rev() {
+            if !view.merge_axes(Axis(axis), Axis(inner)) {
+                break;
+            }
+        }
         let row_length = view.shape()[view.ndim() - 2];
         Rows { view, row_length, point_count }
     }

@@ -1,8 +1,9 @@
 //! `jaspe.Texture`: a procedural material over arrays of points. Its parameters are properties, one for each that is declared.
 
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use jaspe_bake::{Loop, Settings};
+use jaspe_bake::Loop;
 use jaspe_render::swatch;
 use jaspe_texture::declare::{Declaration, Kind, Parameter, Value};
 use jaspe_texture::{BuildError, Space, Texture as Material};
@@ -11,7 +12,7 @@ use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyString, PyTuple};
 
-use crate::bake;
+use crate::bake::{self, Wanted};
 use crate::error::value_error;
 use crate::image::Image;
 use crate::noise::shown;
@@ -150,14 +151,18 @@ impl Texture {
     }
 
     /// Bakes maps that tile without a seam, exactly periodic and not blended: `texture.bake(512, ["color", "normal"])`. Each
-    /// is float32 from 0 to 1, of shape (size, size) or (size, size, 3): "color" and "emission" display-encoded, "height" from the
-    /// lowest to the highest point, "normal" with 0.5 in the middle, "roughness", "ao". All but "emission" unless named.
+    /// is float32 from 0 to 1, of shape (height, width) or (height, width, 3): "color" and "emission" display-encoded, "height"
+    /// from the lowest to the highest point, "normal" with 0.5 in the middle and from exact derivatives, "roughness", "ao".
+    /// Without `maps`, all that tell of the material.
     ///
-    /// `tile` is the side in units of the texture, by default what shows the material well. Green points up in a normal map
-    /// of OpenGL ("gl") and down in one of DirectX ("dx"). `frames` makes it one of a sequence that returns to its beginning
-    /// after `cells` noise cells of time. Normals come from exact derivatives. `progress` is as for `Scene.render`.
+    /// `size` is the width in pixels. `tile` is the width in units of the texture, by default what shows the material well.
+    /// `surface` is unrolled: "plane", or "sphere", "cube" and "cylinder", which are cut from the solid material; or `mesh`, an OBJ
+    /// file, in its own texture coordinates. Green points up in a normal map of OpenGL ("gl") and down in one of DirectX
+    /// ("dx"). `frames` makes it the one of number `frame` in a sequence that returns to its beginning, while `pace` noise cells of
+    /// time pass. `progress` is as for `Scene.render`.
     #[pyo3(signature = (
-        size = 1024, maps = None, *, tile = None, normal = "gl", frames = None, cells = 1, frame = 0, progress = None
+        size = 1024, maps = None, *, tile = None, surface = "plane", mesh = None, normal = "gl", frames = None, pace = 1, frame = 0,
+        progress = None
     ))]
     #[expect(clippy::too_many_arguments, reason = "they are named where this is called")]
     fn bake<'py>(
@@ -166,22 +171,53 @@ impl Texture {
         size: u32,
         maps: Option<Vec<String>>,
         tile: Option<f64>,
+        surface: &str,
+        mesh: Option<PathBuf>,
         normal: &str,
         frames: Option<u32>,
-        cells: u32,
+        pace: u32,
         frame: u32,
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let defaults = Settings::default();
-        let settings = Settings {
-            size,
-            tile,
-            maps: maps.map_or(Ok(defaults.maps), |maps| bake::maps_called(&maps))?,
-            normal: bake::convention_called(normal)?,
-            animation: frames.map(|frames| Loop { frames, first: 0, cells }),
-            ..Settings::default()
-        };
-        bake::bake(py, self.material(), settings, frame, progress)
+        let (surface, normal) = (surface.to_owned(), normal.to_owned());
+        let animation = frames.map(|frames| Loop { frames, first: 0, cells: pace });
+        let wanted = Wanted { size, maps, tile, surface, mesh, normal, animation };
+        bake::arrays(py, self.material(), wanted, frame, progress)
+    }
+
+    /// Bakes a set of files into a folder, as `jaspe bake` does, and returns their names: the maps, a `material.json` that says what
+    /// was baked, and the files by which other programs open it. The folder appears whole or not at all.
+    ///
+    /// `format` is "png", "exr", "jpg" or "webp", with 8 or 16 `bits` for PNG and 16 or 32 for EXR; heights have 16 unless
+    /// told. `frames` writes a whole sequence. `preview` adds a picture of the material on a ball and a cloth. The rest is as for
+    /// `bake`.
+    #[pyo3(signature = (
+        folder, size = 1024, maps = None, *, tile = None, surface = "plane", mesh = None, normal = "gl", frames = None, pace = 1,
+        format = "png", bits = None, preview = false, progress = None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "they are named where this is called")]
+    fn bake_set(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        size: u32,
+        maps: Option<Vec<String>>,
+        tile: Option<f64>,
+        surface: &str,
+        mesh: Option<PathBuf>,
+        normal: &str,
+        frames: Option<u32>,
+        pace: u32,
+        format: &str,
+        bits: Option<u32>,
+        preview: bool,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Vec<String>> {
+        let (surface, normal) = (surface.to_owned(), normal.to_owned());
+        let animation = frames.map(|frames| Loop { frames, first: 0, cells: pace });
+        let wanted = Wanted { size, maps, tile, surface, mesh, normal, animation };
+        let options = bake::set_options(format, bits, preview)?;
+        bake::set(py, self.material(), wanted, folder, options, progress)
     }
 
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {

@@ -2,7 +2,7 @@
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
@@ -14,6 +14,9 @@ use rayon::ThreadPool;
 
 /// How often signals are looked for: well below the fifth of a second after which people press Ctrl-C again.
 const BEAT: Duration = Duration::from_millis(25);
+
+/// How long stopped work is waited for.
+const GRACE: Duration = Duration::from_millis(100);
 
 /// Follows work from another thread, and stops it.
 #[derive(Debug, Default)]
@@ -63,9 +66,7 @@ pub fn interruptible<T: Send + 'static>(
         Ok(())
     };
     loop {
-        let receiver = &mut receiver;
-        let outcome = py.detach(move || receiver.recv_timeout(BEAT));
-        let beat = match outcome {
+        let beat = match wait(py, &mut receiver, BEAT) {
             Ok(result) => return report(true).map(|()| result),
             Err(RecvTimeoutError::Timeout) => report(false),
             Err(RecvTimeoutError::Disconnected) => match thread.join() {
@@ -75,9 +76,17 @@ pub fn interruptible<T: Send + 'static>(
         };
         if let Err(raised) = beat {
             watch.stopped.store(true, Ordering::Relaxed);
+            // Most work ends within this, and leaves nothing behind.
+            let _ = wait(py, &mut receiver, GRACE);
             return Err(raised);
         }
     }
+}
+
+/// Waits for a result without the interpreter's lock.
+fn wait<T: Send>(py: Python<'_>, receiver: &mut Receiver<T>, time: Duration) -> Result<T, RecvTimeoutError> {
+    // (A receiver may be lent to another thread, but not shared with it.)
+    py.detach(move || receiver.recv_timeout(time))
 }
 
 /// The threads of this process. A process that was forked off has none of its parent's and gets its own.
