@@ -6,7 +6,6 @@
 mod arguments;
 mod command;
 mod failure;
-mod flip;
 mod interrupt;
 mod material;
 mod measure;

@@ -4,10 +4,9 @@ use std::io::Cursor;
 use std::path::Path;
 
 use image::{DynamicImage, ImageReader};
-use jaspe_render::{Encoding, Film, srgb_decode, srgb_encode};
+use jaspe_render::{Encoding, Film, flip, srgb_decode, srgb_encode};
 
 use crate::failure::Failure;
-use crate::flip::flip;
 
 /// A picture as a display shows it: values from 0 to 1, on black.
 #[derive(Debug, Clone, PartialEq)]

@@ -60,6 +60,19 @@ impl Motion {
         Motion { times: [0.0; 2], steps: vec![matrix] }
     }
 
+    /// The same motion of what `base` has placed.
+    pub fn of(mut self, base: DMat4) -> Self {
+        self.steps.iter_mut().for_each(|step| *step *= base);
+        self
+    }
+
+    /// Matrices between which all those of an exposure lie, element by element.
+    pub fn during(&self, shutter: Shutter) -> Vec<DMat4> {
+        let mut matrices = vec![self.at(shutter.open), self.at(shutter.close)];
+        matrices.extend_from_slice(&self.steps);
+        matrices
+    }
+
     /// Whether it is the same at all times.
     pub fn is_still(&self) -> bool {
         self.steps.windows(2).all(|pair| pair[0] == pair[1])

@@ -184,7 +184,7 @@ impl Report {
             rays.clear();
             for x in 0..size[0] {
                 let (origin, direction) = self.camera.ray(x as f32 + 0.5, y as f32 + 0.5);
-                rays.push(Ray { origin, direction, t_min: T_MIN, t_max: f32::INFINITY, skip: Id::NONE });
+                rays.push(Ray { origin, direction, t_min: T_MIN, t_max: f32::INFINITY, skip: Id::NONE, time: None });
             }
             geometry.closest(rays.view(T_MIN), &mut hits, &mut scratch);
             for i in 0..rays.len() {

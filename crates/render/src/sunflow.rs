@@ -70,6 +70,8 @@ pub(crate) struct Room {
     /// Of the coat.
     gloss: Vec<[f32; 3]>,
     shadows: Shadows,
+    /// What short rays meet.
+    near: Hits,
     nearest: Nearest,
     scratch: Scratch,
 }
@@ -103,6 +105,7 @@ impl Rules for Sunflow {
         if let Indirect::VirtualLights(lights) = &self.indirect {
             lit.retain(|lit| lit.color != Vec3::ZERO && lit.point.path.depth.diffuse < self.max_diffuse);
             lights.illuminate(batch.geometry, &lit, room, queues);
+            lights.compensate(self, batch.geometry, &lit, room, queues);
         }
         room.shadows.trace(batch.geometry, queues, &mut room.scratch);
     }
@@ -195,8 +198,7 @@ fn paint(albedo: &Albedo, batch: &Batch<'_>, points: &Points, texture_points: &m
             colors.iter_mut().enumerate().for_each(|(i, color)| *color = picture.smooth(uv(i)).to_array());
         }
         Albedo::Procedural(procedural) => {
-            let local =
-                |i: usize| geometry.objects[batch.hit(i).id.object as usize].object_from_world.point(point.get(i));
+            let local = |i: usize| geometry.pose(&batch.hit(i)).object_from_world.point(point.get(i));
             texture_points.resize(count);
             match procedural.texture.space() {
                 Space::World => return procedural.evaluate(point, colors),
@@ -305,8 +307,8 @@ impl Sunflow {
         if let Some(Caustics::Wanted { emit, gather, radius }) = self.caustics {
             ready.caustics = CausticMap::send(&senders, emit, gather, radius).map(|map| Caustics::Map(Arc::new(map)));
         }
-        if let Indirect::Instant { samples, sets, bias } = self.indirect {
-            let lights = VirtualLights::send(&senders, samples, sets, bias);
+        if let Indirect::Instant { samples, sets, bias, bias_samples } = self.indirect {
+            let lights = VirtualLights::send(&senders, samples, sets, (bias, bias_samples));
             ready.indirect = Indirect::VirtualLights(Arc::new(lights));
         }
         (ready, senders.spent.into_inner().unwrap_or_else(PoisonError::into_inner))

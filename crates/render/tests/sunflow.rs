@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use jaspe_render::{CompileOptions, RenderOptions, compile, render};
+use jaspe_render::{CompileOptions, Film, RenderOptions, compile, flip, render, srgb_decode, srgb_encode};
 use jaspe_scene::{DiskLoader, read};
 
 /// A scene, the size at which it was measured, mean red, green and blue.
@@ -80,13 +80,18 @@ fn scene(name: &str) -> Option<PathBuf> {
     path.exists().then_some(path)
 }
 
-/// Mean colours of the parts of a picture of so many columns and rows; light from nowhere counts as black.
-fn blocks(path: &Path, size: [u32; 2], parts: usize) -> Vec<[f32; 3]> {
+/// A scene at a size, or at its own.
+fn film(path: &Path, size: Option<[u32; 2]>) -> Film {
     let (scene, diagnostics) = read(path, &DiskLoader);
     assert!(!diagnostics.has_errors(), "{}: {diagnostics:?}", path.display());
-    let options = CompileOptions { resolution: Some(size), ..CompileOptions::default() };
+    let options = CompileOptions { resolution: size, ..CompileOptions::default() };
     let compiled = compile(&scene, &DiskLoader, &options).scene.expect("no errors");
-    let (film, _) = render(&compiled, &RenderOptions::default(), &()).expect("not cancelled");
+    render(&compiled, &RenderOptions::default(), &()).expect("not cancelled").0
+}
+
+/// Mean colours of the parts of a picture of so many columns and rows; light from nowhere counts as black.
+fn blocks(path: &Path, size: [u32; 2], parts: usize) -> Vec<[f32; 3]> {
+    let film = film(path, Some(size));
     let (width, height) = (film.width as usize, film.height as usize);
     let part = |row: usize, column: usize| {
         let mut sum = [0.0f64; 3];
@@ -125,5 +130,46 @@ fn ninths_of_pictures_are_as_bright_as_sunflows() {
             let off = (0..3).any(|c| (mean[c] - expected[c]).abs() > 0.04 * expected[c] + 1e-3);
             assert!(!off, "{name}, ninth {i}: {mean:?}, expected {expected:?}");
         }
+    }
+}
+
+/// Display values of a picture of light, or of one that was un-premultiplied, halved and on black.
+fn halved(width: usize, light: impl Fn(usize) -> [f32; 3]) -> impl Fn(usize) -> [f32; 3] {
+    move |i| {
+        let (x, y) = (i % (width / 2), i / (width / 2));
+        let corners = [0, 1, width, width + 1].map(|offset| light(2 * y * width + 2 * x + offset));
+        [0, 1, 2].map(|c| {
+            let mean = corners.iter().map(|corner| f64::from(corner[c].clamp(0.0, 1.0))).sum::<f64>() / 4.0;
+            srgb_encode(mean) as f32
+        })
+    }
+}
+
+#[test]
+fn pictures_look_like_sunflows() {
+    // Scenes without indirect light must be nearer; the Julia set alone would take half a minute.
+    let limits = MEANS.map(|(name, _, _)| (name, if name.contains('/') { 0.05 } else { 0.08 }));
+    for (name, limit) in limits {
+        let Some(path) = scene(name) else { continue };
+        let file = path.file_stem().expect("a file").to_string_lossy().into_owned() + ".png";
+        let reference =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/reference/sunflow-renders").join(file);
+        if !reference.exists() {
+            continue;
+        }
+        let reference = image::open(&reference).expect("a picture").into_rgba32f();
+        let ours = film(&path, None);
+        assert_eq!([ours.width, ours.height], [reference.width(), reference.height()], "{name}");
+        let (width, count) = (ours.width as usize, (ours.width / 2 * (ours.height / 2)) as usize);
+        let theirs = |i: usize| {
+            let pixel = reference.get_pixel((i % width) as u32, (i / width) as u32);
+            [0, 1, 2].map(|c| (srgb_decode(f64::from(pixel[c])) * f64::from(pixel[3])) as f32)
+        };
+        let own = |i: usize| [0, 1, 2].map(|c| ours.pixels[i][c]);
+        let theirs: Vec<[f32; 3]> = (0..count).map(halved(width, theirs)).collect();
+        let own: Vec<[f32; 3]> = (0..count).map(halved(width, own)).collect();
+        let errors = flip(&theirs, &own, width / 2);
+        let mean = errors.iter().sum::<f32>() / errors.len() as f32;
+        assert!(mean < limit, "{name}: {mean}");
     }
 }

@@ -5,7 +5,6 @@ mod lights;
 mod materials;
 mod objects;
 mod shape;
-mod unsupported;
 
 use std::sync::Arc;
 
@@ -39,7 +38,7 @@ pub struct CompiledScene {
 /// What depends on the dialect.
 #[derive(Debug)]
 pub(crate) enum Meaning {
-    Sunflow { rules: Sunflow, camera: Camera, filter: Filter, jitter: bool },
+    Sunflow { rules: Sunflow, camera: Camera, shutter: Shutter, filter: Filter, jitter: bool },
     Report { rules: Report },
 }
 
@@ -97,8 +96,10 @@ impl CompiledScene {
     pub(crate) fn aim(&self, shots: &Shots<'_>, seed: u64, samples: &mut Samples) {
         samples.of = shots.of;
         match &self.meaning {
-            &Meaning::Sunflow { ref camera, jitter, .. } => {
+            &Meaning::Sunflow { ref camera, shutter, jitter, .. } => {
                 samples.resize(shots.count());
+                let moving = self.world.geometry.is_moving();
+                samples.rays.time.clear();
                 for (i, ([x, y], index)) in shots.iter().enumerate() {
                     let key = SampleKey::new(x, y, index, seed);
                     // A single sample stands for the pixel's centre. Several lie alike in all pixels, so that edges
@@ -109,7 +110,8 @@ impl CompiledScene {
                         (_, true) => key.pair(0),
                     };
                     let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
-                    let time = if camera.is_moving() { key.pair(TIME)[0] } else { 0.5 };
+                    let time = if moving || camera.is_moving() { key.pair(TIME)[0] } else { 0.5 };
+                    samples.rays.time.extend(moving.then(|| shutter.moment(f64::from(time)) as f32));
                     let ray = camera.ray(x as f32 + dx, y as f32 + dy, lens, time);
                     samples.set(i, ray, key);
                 }
@@ -131,7 +133,6 @@ impl CompiledScene {
 pub fn compile(scene: &Scene, loader: &dyn Loader, options: &CompileOptions) -> Compilation {
     let mut diagnostics = Diagnostics::default();
     let dialect = options.dialect.or(scene.dialect.map(|dialect| dialect.value)).unwrap_or_default();
-    unsupported::report(scene, &mut diagnostics);
     let mut pictures = Pictures::new(scene, dialect, loader);
     let mut materials = materials::compile(scene, &mut pictures, options.look, &mut diagnostics);
     let lit = match dialect {
@@ -141,8 +142,7 @@ pub fn compile(scene: &Scene, loader: &dyn Loader, options: &CompileOptions) -> 
     let mut plan = Plan::default();
     let (lights, surroundings) = lit.show(&mut plan);
     let shutter = Shutter::of(scene.cameras.last());
-    unsupported::report_motion(scene, shutter, &mut diagnostics);
-    let sources = shape::Sources { scene, loader, time: shutter.middle() };
+    let sources = shape::Sources { scene, loader, shutter };
     let planned = objects::compile(&sources, dialect, plan, &mut materials, &mut diagnostics);
     let Some(camera) = scene.cameras.last() else {
         diagnostics.push(Diagnostic::error(None, "the scene has no camera").hint(
@@ -226,7 +226,8 @@ fn sunflow(
     let filter = scene.image.filter.map_or(Filter::Box, |filter| filter.value);
     let filter = if multipass { Filter::Bspline } else { filter };
     let jitter = multipass || scene.image.jitter.is_some_and(|jitter| jitter.value);
-    Meaning::Sunflow { rules, camera: Camera::new(camera, size), filter, jitter }
+    let shutter = Shutter::of(Some(camera));
+    Meaning::Sunflow { rules, camera: Camera::new(camera, size), shutter, filter, jitter }
 }
 
 /// Most samples that one point takes of anything: whatever a scene asks for, memory is bounded.
@@ -251,8 +252,9 @@ fn indirect(scene: &Scene, depth: u8) -> (Indirect, u8) {
         GiKind::IrradianceCache { samples, global, .. } => {
             (Indirect::Paths { samples: bounded(*samples) }, if global.is_some() { depth } else { depth.min(1) })
         }
-        &GiKind::Instant { samples, sets, bias, .. } => {
-            (Indirect::Instant { samples: bounded(samples), sets: sets.min(MOST_SETS), bias }, depth)
+        &GiKind::Instant { samples, sets, bias, bias_samples } => {
+            let (samples, bias_samples) = (bounded(samples), bounded(bias_samples));
+            (Indirect::Instant { samples, sets: sets.min(MOST_SETS), bias, bias_samples }, depth)
         }
         GiKind::AmbientOcclusion { bright, dark, samples, max_distance } => {
             let (dark, bright) = (linear(dark), linear(bright));

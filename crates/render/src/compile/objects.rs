@@ -13,7 +13,7 @@ use super::shape::Sources;
 use crate::affine;
 use crate::geometry::{Geometry, MeshShape, PerVertex, Placement, Plan};
 use crate::material::BLACK;
-use crate::motion::Motion;
+use crate::motion::{Motion, Shutter};
 
 /// The geometry of a scene, and what one dialect needs besides.
 pub(super) struct Planned {
@@ -30,7 +30,7 @@ pub(super) fn compile(
     diagnostics: &mut Diagnostics,
 ) -> Planned {
     let scene = sources.scene;
-    let mut compiler = Compiler { dialect, time: sources.time, materials, diagnostics, missing: HashSet::new() };
+    let mut compiler = Compiler { dialect, shutter: sources.shutter, materials, diagnostics, missing: HashSet::new() };
     let mut appearances: HashMap<&str, Vec<&Instance>> = HashMap::new();
     let known: HashSet<&str> = scene.objects.iter().filter_map(|o| o.name.as_ref().map(|n| n.value.as_str())).collect();
     for instance in &scene.instances {
@@ -101,8 +101,7 @@ fn add(plan: &mut Plan, object: &Object, places: &[Placement], dialect: Dialect,
 
 struct Compiler<'a, 'm> {
     dialect: Dialect,
-    /// The moment in which what moves is shown.
-    time: f64,
+    shutter: Shutter,
     materials: &'a mut Materials<'m>,
     diagnostics: &'a mut Diagnostics,
     /// Names of shaders and modifiers that were reported already.
@@ -129,7 +128,7 @@ impl Compiler<'_, '_> {
         let matrix = match (transform, self.dialect) {
             (None, _) => base,
             (Some(transform), Dialect::Report) => report_matrix(&transform.kind, geometry, base),
-            (Some(transform), Dialect::Sunflow) => Motion::new(&transform.kind).at(self.time) * base,
+            (Some(transform), Dialect::Sunflow) => Motion::new(&transform.kind).at(self.shutter.middle()) * base,
         };
         let place = Placement::new(matrix, materials);
         if place.is_none() {
@@ -139,7 +138,18 @@ impl Compiler<'_, '_> {
                     .hint("scales and radii must not be zero"),
             );
         }
-        place
+        let motion = transform.filter(|_| self.dialect == Dialect::Sunflow && self.shutter.has_duration());
+        let motion = motion.map(|transform| (Motion::new(&transform.kind), transform.span));
+        match motion.filter(|(motion, _)| !motion.is_still()) {
+            Some((_, span)) if matches!(geometry, Written::Plane(_)) => {
+                let message = "a moving plane is not blurred: it stands as in the middle of the exposure";
+                let hint = "a mesh of two triangles is";
+                self.diagnostics.push(Diagnostic::warning(span, message).hint(hint));
+                place
+            }
+            Some((motion, _)) => place.map(|place| place.moving(motion.of(base), self.shutter)),
+            None => place,
+        }
     }
 
     /// The materials of an appearance's shaders, in order.

@@ -18,7 +18,8 @@ mod tests;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use crate::affine::Affine;
+use crate::affine::{self, Affine};
+use crate::motion::Motion;
 use packet::Packet;
 pub(crate) use plan::{Placement, Plan};
 pub(crate) use rays::{Hits, Ids, RayView, Rays, Rows};
@@ -53,6 +54,8 @@ pub(crate) struct Ray {
     pub t_max: f32,
     /// The primitive that the ray leaves and cannot meet again at once.
     pub skip: Id,
+    /// The moment at which it sees what moves; none is the middle of the exposure.
+    pub time: Option<f32>,
 }
 
 /// What a ray meets first. `u` and `v` weight a triangle's second and third vertex.
@@ -62,11 +65,13 @@ pub(crate) struct Hit {
     pub u: f32,
     pub v: f32,
     pub id: Id,
+    /// That of the ray.
+    pub time: Option<f32>,
 }
 
 impl Hit {
     /// Nothing, infinitely far away.
-    pub const NONE: Hit = Hit { t: f32::INFINITY, u: 0.0, v: 0.0, id: Id::NONE };
+    pub const NONE: Hit = Hit { t: f32::INFINITY, u: 0.0, v: 0.0, id: Id::NONE, time: None };
 
     /// Takes the other hit if it is the one to see.
     #[inline(always)]
@@ -168,10 +173,44 @@ pub(crate) struct SphereSet {
 #[derive(Debug, Clone)]
 pub(crate) struct Object {
     pub shape: Shape,
-    pub object_from_world: Affine,
-    pub world_from_object: Affine,
+    /// In the middle of the exposure.
+    pub pose: Pose,
+    /// Index into the motions, if it moves during the exposure.
+    motion: Option<u32>,
     /// First material; mesh slots count from here.
     pub materials: Vec<u32>,
+}
+
+/// Where an object is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pose {
+    pub object_from_world: Affine,
+    pub world_from_object: Affine,
+}
+
+/// How objects move.
+#[derive(Debug, Clone, Default)]
+struct Motions(Vec<Motion>);
+
+impl Motions {
+    /// Where an object is at a moment.
+    #[inline]
+    fn pose(&self, object: &Object, time: Option<f32>) -> Pose {
+        match (object.motion, time) {
+            (Some(motion), Some(time)) => self.moved(object, motion, time),
+            _ => object.pose,
+        }
+    }
+
+    /// Never a part of the kernels, which it would only swell. Where the object is flattened to nothing, it stands still.
+    #[inline(never)]
+    fn moved(&self, object: &Object, motion: u32, time: f32) -> Pose {
+        let world_from_object = self.0[motion as usize].at(f64::from(time));
+        affine::inverse(world_from_object).map_or(object.pose, |object_from_world| Pose {
+            object_from_world: object_from_world.into(),
+            world_from_object: world_from_object.into(),
+        })
+    }
 }
 
 /// All shapes of a scene.
@@ -187,6 +226,17 @@ pub(crate) struct Geometry {
 }
 
 impl Geometry {
+    /// Whether anything moves during the exposure, so that rays need moments.
+    pub fn is_moving(&self) -> bool {
+        !self.tree.motions.0.is_empty()
+    }
+
+    /// Where the object of a hit is when it is met.
+    #[inline]
+    pub fn pose(&self, hit: &Hit) -> Pose {
+        self.tree.motions.pose(&self.objects[hit.id.object as usize], hit.time)
+    }
+
     /// Whether a ray that leaves a primitive of this object in a straight line cannot meet it again.
     #[inline]
     pub fn is_flat(&self, object: u32) -> bool {
@@ -200,6 +250,8 @@ impl Geometry {
     /// The first hit of every ray.
     pub fn closest(&self, rays: RayView<'_>, hits: &mut Hits, scratch: &mut Scratch) {
         hits.resize(rays.len());
+        hits.time.clear();
+        hits.time.extend_from_slice(rays.time);
         simd::run(Closest { geometry: self, rays, hits, scratch });
     }
 

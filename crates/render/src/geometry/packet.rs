@@ -146,7 +146,7 @@ impl<'a, S: Simd, const ANY: bool> Packet<'a, S, ANY> {
     fn hit(&self, i: usize) -> Hit {
         let [object, index] = self.ids.store();
         let (t, u, v) = (self.t.store(), self.u.store(), self.v.store());
-        Hit { t: t[i], u: u[i], v: v[i], id: Id { object: object[i], index: index[i] } }
+        Hit { t: t[i], u: u[i], v: v[i], id: Id { object: object[i], index: index[i] }, time: None }
     }
 
     /// Goes through the tree.

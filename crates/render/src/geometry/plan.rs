@@ -11,8 +11,9 @@ use glam::{DMat4, DVec3, Vec3, Vec4};
 use super::analytic::{Analytic, Leaf, Leaves};
 use super::bvh::{self, Aabb, Child, Item, Kind, Node};
 use super::traverse::{InstanceLeaf, SphereBlock, Tree, TriangleBlock};
-use super::{Geometry, Id, MeshShape, Object, PerVertex, PlaneShape, Shape, SphereSet};
+use super::{Geometry, Id, MeshShape, Motions, Object, PerVertex, PlaneShape, Pose, Shape, SphereSet};
 use crate::affine::{self, Affine};
+use crate::motion::{Motion, Shutter};
 
 /// Where an object stands and what it is made of.
 #[derive(Debug, Clone)]
@@ -20,13 +21,28 @@ pub(crate) struct Placement {
     pub world_from_object: DMat4,
     pub object_from_world: DMat4,
     pub materials: Vec<u32>,
+    /// How it moves during the exposure, if it does: `world_from_object` over time.
+    motion: Option<Moving>,
+}
+
+/// A motion, and matrices between which it stays while the shutter is open.
+#[derive(Debug, Clone)]
+struct Moving {
+    motion: Motion,
+    extent: Vec<DMat4>,
 }
 
 impl Placement {
     /// A placement by `world_from_object`, unless that map cannot be inverted.
     pub fn new(world_from_object: DMat4, materials: Vec<u32>) -> Option<Self> {
         let object_from_world = affine::inverse(world_from_object)?;
-        Some(Placement { world_from_object, object_from_world, materials })
+        Some(Placement { world_from_object, object_from_world, materials, motion: None })
+    }
+
+    /// The same, in motion while the shutter is open.
+    pub fn moving(self, motion: Motion, shutter: Shutter) -> Self {
+        let extent = motion.during(shutter);
+        Placement { motion: Some(Moving { motion, extent }), ..self }
     }
 }
 
@@ -38,8 +54,13 @@ pub(crate) struct Plan {
     objects: Vec<Object>,
     sphere_sets: Vec<SphereSet>,
     analytics: Vec<Arc<dyn Analytic>>,
+    /// By object, where it is.
+    places: Vec<DMat4>,
     /// Objects that are instances, and of what.
-    instances: Vec<(u32, Shared, DMat4)>,
+    instances: Vec<(u32, Shared)>,
+    motions: Vec<Motion>,
+    /// By motion: matrices between which it stays.
+    extents: Vec<Vec<DMat4>>,
 }
 
 /// What instances show.
@@ -54,10 +75,19 @@ enum Shared {
 
 impl Plan {
     fn object(&mut self, shape: Shape, place: &Placement) -> u32 {
+        let motion = place.motion.as_ref().map(|moving| {
+            self.motions.push(moving.motion.clone());
+            self.extents.push(moving.extent.clone());
+            (self.motions.len() - 1) as u32
+        });
+        self.places.push(place.world_from_object);
         self.objects.push(Object {
             shape,
-            object_from_world: place.object_from_world.into(),
-            world_from_object: place.world_from_object.into(),
+            pose: Pose {
+                object_from_world: place.object_from_world.into(),
+                world_from_object: place.world_from_object.into(),
+            },
+            motion,
             materials: place.materials.clone(),
         });
         (self.objects.len() - 1) as u32
@@ -66,13 +96,13 @@ impl Plan {
     /// The unit sphere, placed.
     pub fn sphere(&mut self, place: &Placement) {
         match affine::similarity_scale(place.world_from_object) {
-            Some(scale) => {
+            Some(scale) if place.motion.is_none() => {
                 let center = place.world_from_object.transform_point3(DVec3::ZERO).as_vec3();
                 self.object(Shape::Sphere { center, radius: scale as f32 }, place);
             }
-            None => {
+            _ => {
                 let object = self.object(Shape::Ellipsoid, place);
-                self.instances.push((object, Shared::UnitSphere, place.world_from_object));
+                self.instances.push((object, Shared::UnitSphere));
             }
         }
     }
@@ -92,14 +122,14 @@ impl Plan {
         let index = self.meshes.len() as u32;
         match places {
             [] => return,
-            [place] => {
+            [place] if place.motion.is_none() => {
                 bake(&mut mesh, place);
                 self.object(Shape::Mesh(index), place);
             }
             _ => {
                 for place in places {
                     let object = self.object(Shape::MeshInstance(index), place);
-                    self.instances.push((object, Shared::Mesh(index), place.world_from_object));
+                    self.instances.push((object, Shared::Mesh(index)));
                 }
             }
         }
@@ -110,6 +140,7 @@ impl Plan {
     pub fn spheres(&mut self, mut set: SphereSet, places: &[Placement]) {
         let index = self.sphere_sets.len() as u32;
         if let [place] = places
+            && place.motion.is_none()
             && let Some(scale) = affine::similarity_scale(place.world_from_object)
         {
             for sphere in &mut set.spheres {
@@ -120,7 +151,7 @@ impl Plan {
         } else {
             for place in places {
                 let object = self.object(Shape::SpheresInstance(index), place);
-                self.instances.push((object, Shared::Spheres(index), place.world_from_object));
+                self.instances.push((object, Shared::Spheres(index)));
             }
         }
         self.sphere_sets.push(set);
@@ -133,6 +164,15 @@ impl Plan {
             self.object(Shape::Analytic(index), place);
         });
         self.analytics.push(shape);
+    }
+
+    /// A box in the world around a box of an object, wherever that is during the exposure.
+    fn around(&self, bounds: Aabb, object: u32) -> Aabb {
+        let here = std::slice::from_ref(&self.places[object as usize]);
+        let motion = self.objects[object as usize].motion;
+        let extent = motion.map_or(here, |motion| &self.extents[motion as usize]);
+        let corners = bounds.corners().map(|corner| corner.as_dvec3());
+        Aabb::around(extent.iter().flat_map(|matrix| corners.map(|corner| matrix.transform_point3(corner).as_vec3())))
     }
 
     /// Builds the tree.
@@ -152,11 +192,12 @@ impl Plan {
             };
             named(single.into_iter().chain(set.iter().copied()), object)
         })));
-        roots.extend(builder.instances_of(&self.instances, &shared, &self.objects));
-        roots.extend(builder.analytics_of(self.analytics, &self.objects));
+        roots.extend(builder.instances_of(&self, &shared));
+        roots.extend(builder.analytics_of(&self));
         let root = builder.join(&roots);
         let Builder { nodes, triangles, spheres, instances, analytic } = builder;
-        let tree = Tree { root, nodes, triangles, spheres, instances, analytic };
+        let motions = Motions(self.motions);
+        let tree = Tree { root, nodes, triangles, spheres, instances, analytic, motions };
         let mut geometry = Geometry {
             tree,
             planes: self.planes,
@@ -173,7 +214,7 @@ impl Plan {
     fn shared_trees(&self, builder: &mut Builder) -> SharedTrees {
         let none = Id::NONE.object;
         let mut trees = SharedTrees::new();
-        for &(_, shape, _) in &self.instances {
+        for &(_, shape) in &self.instances {
             trees.entry(shape).or_insert_with(|| match shape {
                 Shared::Mesh(mesh) => builder.triangles_of(std::iter::once((&self.meshes[mesh as usize], none))),
                 Shared::UnitSphere => builder.spheres_of(named([Vec3::ZERO.extend(1.0)], none)),
@@ -291,22 +332,18 @@ impl Builder {
     }
 
     /// A tree over instances.
-    fn instances_of(
-        &mut self,
-        instances: &[(u32, Shared, DMat4)],
-        shared: &SharedTrees,
-        objects: &[Object],
-    ) -> Option<(Child, Aabb)> {
+    fn instances_of(&mut self, plan: &Plan, shared: &SharedTrees) -> Option<(Child, Aabb)> {
         let mut items = Vec::new();
         let mut leaves = Vec::new();
-        for &(object, shape, world_from_object) in instances {
+        for &(number, shape) in &plan.instances {
             let Some((root, bounds)) = shared.get(&shape).copied().flatten() else { continue };
-            let corners = bounds.corners().map(|c| world_from_object.transform_point3(c.as_dvec3()).as_vec3());
-            let bounds = Aabb::around(corners);
+            let object = &plan.objects[number as usize];
+            let bounds = plan.around(bounds, number);
             if bounds.is_finite() {
                 items.push(Item { bounds, index: leaves.len() as u32 });
-                let object_from_world = objects[object as usize].object_from_world;
-                leaves.push(InstanceLeaf { root, object_from_world, object });
+                let moving = object.motion.map(|_| Box::new(object.clone()));
+                let object_from_world = object.pose.object_from_world;
+                leaves.push(InstanceLeaf { root, object_from_world, object: number, moving });
             }
         }
         let tree = bvh::build(&mut items, 1, &mut self.nodes, &mut |items| {
@@ -317,13 +354,13 @@ impl Builder {
     }
 
     /// A tree over the parts of the shapes that are met by a formula.
-    fn analytics_of(&mut self, shapes: Vec<Arc<dyn Analytic>>, objects: &[Object]) -> Option<(Child, Aabb)> {
+    fn analytics_of(&mut self, plan: &Plan) -> Option<(Child, Aabb)> {
+        let shapes = &plan.analytics;
         let (mut items, mut leaves, mut placed) = (Vec::new(), Vec::new(), Vec::new());
-        for (number, object) in (0..).zip(objects) {
+        for (number, object) in (0..).zip(&plan.objects) {
             let Shape::Analytic(shape) = object.shape else { continue };
             for part in 0..shapes[shape as usize].part_count() {
-                let corners = shapes[shape as usize].bounds(part).corners();
-                let bounds = Aabb::around(corners.map(|corner| object.world_from_object.point(corner)));
+                let bounds = plan.around(shapes[shape as usize].bounds(part), number);
                 if bounds.is_finite() {
                     items.push(Item { bounds, index: leaves.len() as u32 });
                     leaves.push(Leaf { part: part as u32, object: placed.len() as u32 });
@@ -334,7 +371,7 @@ impl Builder {
         let tree = bvh::build(&mut items, 1, &mut self.nodes, &mut |items| {
             Child::leaf(Kind::Analytic, items[0].index as usize)
         });
-        self.analytic = Leaves { shapes, objects: placed, leaves };
+        self.analytic = Leaves { shapes: shapes.clone(), objects: placed, leaves };
         tree
     }
 

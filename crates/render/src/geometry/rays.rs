@@ -103,6 +103,8 @@ pub(crate) struct Rays {
     pub direction: Rows,
     pub t_max: Vec<f32>,
     pub skip: Ids,
+    /// Empty where nothing moves.
+    pub time: Vec<f32>,
 }
 
 impl Rays {
@@ -119,6 +121,7 @@ impl Rays {
         self.direction.clear();
         self.t_max.clear();
         self.skip.clear();
+        self.time.clear();
     }
 
     /// Room for `count` rays: all rows of that length, for those who write them one by one.
@@ -135,18 +138,21 @@ impl Rays {
         self.direction.push(ray.direction);
         self.t_max.push(ray.t_max);
         self.skip.push(ray.skip);
+        self.time.extend(ray.time);
     }
 
     /// Ray `i`, from 0 on.
     #[inline]
     pub fn get(&self, i: usize) -> Ray {
         let (origin, direction) = (self.origin.get(i), self.direction.get(i));
-        Ray { origin, direction, t_min: 0.0, t_max: self.t_max[i], skip: self.skip.get(i) }
+        let time = self.time.get(i).copied();
+        Ray { origin, direction, t_min: 0.0, t_max: self.t_max[i], skip: self.skip.get(i), time }
     }
 
     /// These rays, to be traced from `t_min` on.
     pub fn view(&self, t_min: f32) -> RayView<'_> {
-        RayView { origin: &self.origin, direction: &self.direction, t_max: &self.t_max, skip: &self.skip, t_min }
+        let Rays { origin, direction, t_max, skip, time } = self;
+        RayView { origin, direction, t_max, skip, t_min, time }
     }
 }
 
@@ -158,6 +164,7 @@ pub(crate) struct RayView<'a> {
     pub t_max: &'a [f32],
     pub skip: &'a Ids,
     pub t_min: f32,
+    pub time: &'a [f32],
 }
 
 impl RayView<'_> {
@@ -169,7 +176,8 @@ impl RayView<'_> {
     #[inline(always)]
     pub fn get(&self, i: usize) -> Ray {
         let (origin, direction) = (self.origin.get(i), self.direction.get(i));
-        Ray { origin, direction, t_min: self.t_min, t_max: self.t_max[i], skip: self.skip.get(i) }
+        let time = self.time.get(i).copied();
+        Ray { origin, direction, t_min: self.t_min, t_max: self.t_max[i], skip: self.skip.get(i), time }
     }
 }
 
@@ -208,6 +216,8 @@ pub(crate) struct Hits {
     pub u: Vec<f32>,
     pub v: Vec<f32>,
     pub id: Ids,
+    /// Empty where nothing moves.
+    pub time: Vec<f32>,
 }
 
 impl Hits {
@@ -218,6 +228,6 @@ impl Hits {
 
     #[inline]
     pub fn get(&self, i: usize) -> Hit {
-        Hit { t: self.t[i], u: self.u[i], v: self.v[i], id: self.id.get(i) }
+        Hit { t: self.t[i], u: self.u[i], v: self.v[i], id: self.id.get(i), time: self.time.get(i).copied() }
     }
 }

@@ -96,8 +96,8 @@ impl Geometry {
     /// The surface at a hit.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        let object = &self.objects[hit.id.object as usize];
-        match object.shape {
+        let pose = self.pose(hit);
+        match self.objects[hit.id.object as usize].shape {
             Shape::Sphere { center, radius } => on_sphere(ray, hit, center, radius),
             Shape::Plane(index) => {
                 let plane = &self.planes[index as usize];
@@ -108,14 +108,14 @@ impl Geometry {
             Shape::Mesh(index) => mesh_surface(&self.meshes[index as usize], hit),
             Shape::MeshInstance(index) => {
                 let local = mesh_surface(&self.meshes[index as usize], hit);
-                let normal = |n: Vec3| object.object_from_world.transposed(n).normalize_or(Vec3::Z);
+                let normal = |n: Vec3| pose.object_from_world.transposed(n).normalize_or(Vec3::Z);
                 let geometric = normal(local.geometric);
-                Surface { point: object.world_from_object.point(local.point), geometric, normal: normal(local.normal) }
+                Surface { point: pose.world_from_object.point(local.point), geometric, normal: normal(local.normal) }
             }
             Shape::Ellipsoid => {
-                let local = object.object_from_world.point(ray.origin + ray.direction * hit.t).normalize_or(Vec3::Z);
-                let normal = object.object_from_world.transposed(local).normalize_or(Vec3::Z);
-                Surface { point: object.world_from_object.point(local), geometric: normal, normal }
+                let local = pose.object_from_world.point(ray.origin + ray.direction * hit.t).normalize_or(Vec3::Z);
+                let normal = pose.object_from_world.transposed(local).normalize_or(Vec3::Z);
+                Surface { point: pose.world_from_object.point(local), geometric: normal, normal }
             }
             Shape::Spheres(index) => {
                 let sphere = self.sphere_sets[index as usize].spheres[hit.id.index as usize];
@@ -123,27 +123,27 @@ impl Geometry {
             }
             Shape::SpheresInstance(index) => {
                 let sphere = self.sphere_sets[index as usize].spheres[hit.id.index as usize];
-                let local = object.object_from_world.point(ray.origin + ray.direction * hit.t) - sphere.truncate();
+                let local = pose.object_from_world.point(ray.origin + ray.direction * hit.t) - sphere.truncate();
                 let outward = local.normalize_or(Vec3::Z);
-                let normal = object.object_from_world.transposed(outward).normalize_or(Vec3::Z);
-                let point = object.world_from_object.point(sphere.truncate() + outward * sphere.w);
+                let normal = pose.object_from_world.transposed(outward).normalize_or(Vec3::Z);
+                let point = pose.world_from_object.point(sphere.truncate() + outward * sphere.w);
                 Surface { point, geometric: normal, normal }
             }
-            Shape::Analytic(index) => analytic::surface(&*self.tree.analytic.shapes[index as usize], object, ray, hit),
+            Shape::Analytic(index) => analytic::surface(&*self.tree.analytic.shapes[index as usize], &pose, ray, hit),
         }
     }
 
     /// Texture coordinates at a hit; zero where the shape has none (format reference, §3.13).
     pub fn uv(&self, hit: &Hit, point: Vec3) -> Vec2 {
-        let object = &self.objects[hit.id.object as usize];
-        match object.shape {
-            Shape::Sphere { .. } | Shape::Ellipsoid => sphere_uv(object.object_from_world.point(point)),
+        let pose = self.pose(hit);
+        match self.objects[hit.id.object as usize].shape {
+            Shape::Sphere { .. } | Shape::Ellipsoid => sphere_uv(pose.object_from_world.point(point)),
             Shape::Spheres(index) | Shape::SpheresInstance(index) => {
                 let set = &self.sphere_sets[index as usize];
                 if set.uv { sphere_uv(self.outward(set, hit, point)) } else { Vec2::ZERO }
             }
             Shape::Analytic(index) => {
-                let local = object.object_from_world.point(point);
+                let local = pose.object_from_world.point(point);
                 self.tree.analytic.shapes[index as usize].uv(hit.id.index as usize, [hit.u, hit.v], local)
             }
             Shape::Plane(index) => {
@@ -162,12 +162,12 @@ impl Geometry {
 
     /// The corners of the triangle that was hit, in the world.
     pub fn triangle(&self, hit: &Hit) -> Option<[Vec3; 3]> {
-        let object = &self.objects[hit.id.object as usize];
-        match object.shape {
+        let pose = self.pose(hit);
+        match self.objects[hit.id.object as usize].shape {
             Shape::Mesh(index) => Some(self.meshes[index as usize].triangle_points(hit.id.index as usize)),
             Shape::MeshInstance(index) => {
                 let corners = self.meshes[index as usize].triangle_points(hit.id.index as usize);
-                Some(corners.map(|corner| object.world_from_object.point(corner)))
+                Some(corners.map(|corner| pose.world_from_object.point(corner)))
             }
             _ => None,
         }
@@ -176,23 +176,23 @@ impl Geometry {
     /// The direction in which the second texture coordinate grows, in the world; of spheres that of the parallels
     /// (format reference, §3.13). `None` where the shape has none.
     pub fn tangent(&self, hit: &Hit, point: Vec3) -> Option<Vec3> {
-        let object = &self.objects[hit.id.object as usize];
-        match object.shape {
+        let pose = self.pose(hit);
+        match self.objects[hit.id.object as usize].shape {
             Shape::Sphere { .. } | Shape::Ellipsoid => {
-                let local = object.object_from_world.point(point);
-                Some(object.world_from_object.vector(Vec3::new(-local.y, local.x, 0.0)))
+                let local = pose.object_from_world.point(point);
+                Some(pose.world_from_object.vector(Vec3::new(-local.y, local.x, 0.0)))
             }
             Shape::Plane(_) => None,
             Shape::Spheres(index) | Shape::SpheresInstance(index) => {
                 let set = &self.sphere_sets[index as usize];
                 let outward = self.outward(set, hit, point);
-                set.uv.then(|| object.world_from_object.vector(Vec3::new(-outward.y, outward.x, 0.0)))
+                set.uv.then(|| pose.world_from_object.vector(Vec3::new(-outward.y, outward.x, 0.0)))
             }
             Shape::Analytic(index) => {
-                let local = object.object_from_world.point(point);
+                let local = pose.object_from_world.point(point);
                 let shape = &self.tree.analytic.shapes[index as usize];
                 let tangent = shape.tangent(hit.id.index as usize, [hit.u, hit.v], local)?;
-                Some(object.world_from_object.vector(tangent))
+                Some(pose.world_from_object.vector(tangent))
             }
             Shape::Mesh(index) | Shape::MeshInstance(index) => {
                 let [uv0, uv1, uv2] = self.meshes[index as usize].triangle_uvs(hit.id.index as usize)?;
@@ -206,11 +206,11 @@ impl Geometry {
 
     /// The way out of one of many spheres at a point in the world, as a unit vector in their object's space.
     fn outward(&self, set: &SphereSet, hit: &Hit, point: Vec3) -> Vec3 {
-        let object = &self.objects[hit.id.object as usize];
+        let pose = self.pose(hit);
         let center = set.spheres[hit.id.index as usize].truncate();
-        let outward = match object.shape {
-            Shape::SpheresInstance(_) => object.object_from_world.point(point) - center,
-            _ => object.object_from_world.vector(point - center),
+        let outward = match self.objects[hit.id.object as usize].shape {
+            Shape::SpheresInstance(_) => pose.object_from_world.point(point) - center,
+            _ => pose.object_from_world.vector(point - center),
         };
         outward.normalize_or(Vec3::Z)
     }

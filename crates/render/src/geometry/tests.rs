@@ -56,7 +56,7 @@ fn rays(random: &mut Random, count: usize, scale: f32, center: Vec3) -> Vec<Ray>
             let direction = (target + random.point() * spread - origin).normalize();
             let t_max = if random.next() < 0.7 { f32::INFINITY } else { random.next() * 4.0 * scale };
             let origin = center + origin * scale;
-            rays.push(Ray { origin, direction, t_min: 0.0, t_max, skip: Id::NONE });
+            rays.push(Ray { origin, direction, t_min: 0.0, t_max, skip: Id::NONE, time: None });
         }
     }
     rays
@@ -78,7 +78,7 @@ impl PlaneShape {
     fn intersect(&self, ray: &Ray, hit: &mut Hit) {
         let t = (self.point - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
         if t > ray.t_min && ray.skip != self.id() {
-            hit.improve(Hit { t, u: 0.0, v: 0.0, id: self.id() });
+            hit.improve(Hit { t, u: 0.0, v: 0.0, id: self.id(), time: None });
         }
     }
 }
@@ -98,8 +98,8 @@ fn brute_force(geometry: &Geometry, ray: &Ray) -> Hit {
         let number = number as u32;
         let mut local = *ray;
         if matches!(object.shape, Shape::Ellipsoid | Shape::MeshInstance(_) | Shape::SpheresInstance(_)) {
-            local.origin = object.object_from_world.point(ray.origin);
-            local.direction = object.object_from_world.vector(ray.direction);
+            local.origin = object.pose.object_from_world.point(ray.origin);
+            local.direction = object.pose.object_from_world.vector(ray.direction);
         }
         match object.shape {
             Shape::Plane(_) => {}
@@ -114,7 +114,7 @@ fn brute_force(geometry: &Geometry, ray: &Ray) -> Hit {
                 let analytic = &geometry.tree.analytic;
                 for (leaf, part) in analytic.leaves.iter().enumerate() {
                     if analytic.objects[part.object as usize].0 == number {
-                        analytic.meet(leaf, ray, 0.0, &mut best);
+                        analytic.meet(leaf, ray, 0.0, &geometry.tree.motions, &mut best);
                     }
                 }
             }
@@ -139,7 +139,7 @@ fn brute_sphere(ray: &Ray, center: Vec3, radius: f32, (object, index): (u32, u32
     if let Some(crossing) = sphere(&lanes(ray), Vec3x8::splat(center), radius, zero, t_max)
         && crossing.mask != 0
     {
-        best.improve(Hit { t: crossing.t.store()[0], u: 0.0, v: 0.0, id: Id { object, index } });
+        best.improve(Hit { t: crossing.t.store()[0], u: 0.0, v: 0.0, id: Id { object, index }, time: None });
     }
 }
 
@@ -149,7 +149,13 @@ fn brute_mesh(ray: &Ray, mesh: &MeshShape, object: u32, best: &mut Hit) {
         let corners = mesh.triangle_points(index).map(Vec3x8::splat);
         let crossing = triangle(&lanes(ray), corners, Portable::splat(0.0), Portable::splat(best.t));
         if let Some(crossing) = crossing.filter(|crossing| crossing.mask != 0 && id != ray.skip) {
-            best.improve(Hit { t: crossing.t.store()[0], u: crossing.u.store()[0], v: crossing.v.store()[0], id });
+            best.improve(Hit {
+                t: crossing.t.store()[0],
+                u: crossing.u.store()[0],
+                v: crossing.v.store()[0],
+                id,
+                time: None,
+            });
         }
     }
 }
@@ -378,7 +384,7 @@ fn rays_along_the_axes_and_in_the_planes_of_triangles_are_met_as_by_brute_force(
             let direction = axes[i / 16 % 6];
             let origin = random.point() - direction * 2.0;
             let origin = if i % 2 == 0 { origin } else { origin.with_z(0.25) };
-            Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE }
+            Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE, time: None }
         })
         .collect();
     check("axes", &geometry, &rays);
@@ -425,7 +431,7 @@ fn no_ray_leaves_a_closed_mesh_between_its_triangles() {
         .map(|&target| {
             let origin = random.point() * 0.1;
             let direction = (target - origin).normalize();
-            Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE }
+            Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE, time: None }
         })
         .collect();
     let mut hits = Hits::default();
@@ -464,7 +470,8 @@ fn rays_that_leave_a_shape_with_a_formula_get_away_from_it() {
             let surface = geometry.surface(&ray, &hit);
             let side = if ray.direction.dot(surface.geometric) < 0.0 { surface.geometric } else { -surface.geometric };
             let origin = crate::math::offset(surface.point, side);
-            let away = Ray { origin, direction: side, t_min: 0.0, t_max: 1e-3 * size as f32, skip: Id::NONE };
+            let away =
+                Ray { origin, direction: side, t_min: 0.0, t_max: 1e-3 * size as f32, skip: Id::NONE, time: None };
             let mut again = Hit { t: away.t_max, ..Hit::NONE };
             geometry.trace::<Portable, true>(&away, &mut again, &mut scratch);
             (met, stuck) = (met + 1, stuck + usize::from(again.id != Id::NONE));

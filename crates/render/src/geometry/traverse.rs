@@ -8,7 +8,7 @@ use super::bvh::{Child, Kind, MAX_DEPTH, Node};
 use super::kernel::{self, Crossing, Lanes};
 use super::packet;
 use super::simd::{Simd, Vec3x8};
-use super::{Hit, Id, Ray};
+use super::{Hit, Id, Motions, Object, Ray};
 use crate::affine::Affine;
 
 /// Eight triangles; unused lanes hold NaN and are never hit.
@@ -44,9 +44,12 @@ impl SphereBlock {
 pub(crate) struct InstanceLeaf {
     /// The root of its tree.
     pub root: Child,
+    /// In the middle of the exposure.
     pub object_from_world: Affine,
     /// The object that it shows; hits inside carry it in place of the tree's own.
     pub object: u32,
+    /// That object, if it moves during the exposure.
+    pub moving: Option<Box<Object>>,
 }
 
 /// All nodes and leaves of a scene.
@@ -58,6 +61,7 @@ pub(crate) struct Tree {
     pub spheres: Vec<SphereBlock>,
     pub instances: Vec<InstanceLeaf>,
     pub analytic: analytic::Leaves,
+    pub motions: Motions,
 }
 
 /// Most children that wait at a time: a node takes one from the stack and may add eight.
@@ -83,11 +87,15 @@ impl Default for Scratch {
 impl InstanceLeaf {
     /// `ray` in the space of the instance's tree. Distances along it stay what they are.
     #[inline(always)]
-    fn localize(&self, ray: &Ray) -> Ray {
+    fn localize(&self, ray: &Ray, motions: &Motions) -> Ray {
+        let object_from_world = match &self.moving {
+            Some(object) => motions.pose(object, ray.time).object_from_world,
+            None => self.object_from_world,
+        };
         let skip = if ray.skip.object == self.object { Id { object: Id::NONE.object, ..ray.skip } } else { Id::NONE };
         Ray {
-            origin: self.object_from_world.point(ray.origin),
-            direction: self.object_from_world.vector(ray.direction),
+            origin: object_from_world.point(ray.origin),
+            direction: object_from_world.vector(ray.direction),
             skip,
             ..*ray
         }
@@ -154,7 +162,7 @@ impl Tree {
                 Kind::Triangles => self.triangles[child.index()].intersect(&space.lanes, ray, enter, best),
                 Kind::Spheres => self.spheres[child.index()].intersect(&space.lanes, ray, enter, best),
                 Kind::Instance => instances.enter::<S>(&self.instances[child.index()], enter, best),
-                Kind::Analytic => self.analytic.meet(child.index(), ray, enter, best),
+                Kind::Analytic => self.analytic.meet(child.index(), ray, enter, &self.motions, best),
             }
             if ANY && best.id != known {
                 return;
@@ -218,7 +226,13 @@ impl<const ANY: bool> Instances for Nested<'_, ANY> {
         // Hits as far as the best so far may still win by their object.
         let mut found = Hit { t: best.t.next_up(), ..Hit::NONE };
         let root = (0.0, leaf.root);
-        self.tree.walk::<S, ANY>(root, &leaf.localize(self.ray), self.stack, &mut found, &mut NoInstances);
+        self.tree.walk::<S, ANY>(
+            root,
+            &leaf.localize(self.ray, &self.tree.motions),
+            self.stack,
+            &mut found,
+            &mut NoInstances,
+        );
         if found.id != Id::NONE {
             best.improve(Hit { t: found.t.max(enter), id: Id { object: leaf.object, ..found.id }, ..found });
         }
@@ -267,7 +281,7 @@ impl<S: Simd> Crossing<S> {
             let i = mask.trailing_zeros() as usize & 7;
             mask &= mask - 1;
             if ids[i] != skip {
-                best.improve(Hit { t: t[i], u: u[i], v: v[i], id: ids[i] });
+                best.improve(Hit { t: t[i], u: u[i], v: v[i], id: ids[i], time: None });
             }
         }
     }

@@ -161,8 +161,14 @@ impl Report {
             if let Some(lobe) = lobe {
                 sight.add_lobe(light, lobe, batch, points);
             }
-            let rays =
-                RayView { origin: position, direction: &sight.direction, t_max: &sight.t_max, skip: ids, t_min: T_MIN };
+            let rays = RayView {
+                origin: position,
+                direction: &sight.direction,
+                t_max: &sight.t_max,
+                skip: ids,
+                t_min: T_MIN,
+                time: &[],
+            };
             queues.stats.shadow_rays += sight.t_max.iter().filter(|&&t_max| t_max >= 0.0).count() as u64;
             queues.clock.lap(Stage::Shade);
             batch.geometry.occluded(rays, blocked, scratch);
@@ -326,7 +332,7 @@ pub(super) fn spawn_all(batch: &Batch<'_>, room: &Room, queues: &mut Queues<Gath
         }
         let (d, normal) = (batch.rays.direction.get(member as usize), room.normal.get(i));
         let (origin, skip) = (room.position.get(i), room.ids.get(i));
-        let from = |direction| Ray { origin, direction, t_min: T_MIN, t_max: f32::INFINITY, skip };
+        let from = |direction| Ray { origin, direction, t_min: T_MIN, t_max: f32::INFINITY, skip, time: None };
         if share.reflected > 0.0 {
             let mirrored = d - normal * (2.0 * normal.dot(d));
             spawn(path, from(mirrored.normalize_or(d)), share.reflected, RayKind::Reflection, queues);

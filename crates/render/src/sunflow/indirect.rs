@@ -24,6 +24,7 @@ pub(crate) enum Indirect {
         samples: u32,
         sets: u32,
         bias: f32,
+        bias_samples: u32,
     },
     VirtualLights(Arc<VirtualLights>),
     /// `bright` where nothing stands nearer than `distance`, else `dark`.

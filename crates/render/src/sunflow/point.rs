@@ -55,12 +55,12 @@ impl Point<'_> {
     /// A ray from the front side towards something that is `t_max` away.
     #[inline]
     pub fn toward(&self, direction: Vec3, t_max: f32) -> Ray {
-        Ray { origin: self.front, direction, t_min: 0.0, t_max, skip: self.skip }
+        Ray { origin: self.front, direction, t_min: 0.0, t_max, skip: self.skip, time: self.hit.time }
     }
 
     /// A ray from here to wherever it goes.
     pub fn leave(&self, origin: Vec3, direction: Vec3) -> Ray {
-        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: self.skip }
+        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: self.skip, time: self.hit.time }
     }
 
     /// How many rays go out of as many as are asked for.
@@ -105,7 +105,7 @@ impl Points {
             for i in 0..count {
                 let (hit, Surface { point, normal, .. }) = (batch.hit(i), self.surfaces.get(i));
                 let [u, v, _] = math::frame(normal, batch.geometry.tangent(&hit, point));
-                let object_from_world = &batch.geometry.objects[hit.id.object as usize].object_from_world;
+                let object_from_world = &batch.geometry.pose(&hit).object_from_world;
                 let uv = batch.geometry.uv(&hit, point);
                 let place = Place { point, normal, tangent: [u, v], uv, object_from_world };
                 self.surfaces.normal.set(i, modifier.normal(&place));

@@ -15,13 +15,13 @@ use crate::geometry::analytic::{self, Analytic, Flake};
 use crate::geometry::{MeshShape, PerVertex, Placement, Plan, SphereSet};
 use crate::math;
 use crate::mesh_file;
+use crate::motion::Shutter;
 
 /// What shapes are made from, besides their own words.
 pub(super) struct Sources<'a> {
     pub scene: &'a Scene,
     pub loader: &'a dyn Loader,
-    /// The moment in which what moves is shown.
-    pub time: f64,
+    pub shutter: Shutter,
 }
 
 impl Sources<'_> {
@@ -170,7 +170,7 @@ mod tests {
 
     fn mesh(geometry: &Geometry) -> MeshShape {
         let (scene, loader) = (Scene::default(), jaspe_scene::MemoryLoader::default());
-        Sources { scene: &scene, loader: &loader, time: 0.0 }
+        Sources { scene: &scene, loader: &loader, shutter: Shutter::of(None) }
             .mesh(geometry, &mut Diagnostics::default())
             .expect("a mesh")
     }

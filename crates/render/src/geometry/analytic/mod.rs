@@ -24,7 +24,7 @@ pub(crate) use julia::Julia;
 pub(crate) use torus::Torus;
 
 use super::bvh::Aabb;
-use super::{Hit, Id, Object, Ray, Surface};
+use super::{Hit, Id, Motions, Object, Pose, Ray, Surface};
 
 /// A ray in the space of a shape. Distances along it are those of the world; its direction has the length that the world's
 /// unit has there.
@@ -77,11 +77,11 @@ pub(crate) trait Analytic: Debug + Send + Sync {
 }
 
 impl LocalRay {
-    /// `ray` in the space of an object.
-    pub fn new(ray: &Ray, object: &Object) -> Self {
+    /// `ray` in the space of an object that is there.
+    pub fn new(ray: &Ray, pose: &Pose) -> Self {
         LocalRay {
-            origin: object.object_from_world.point(ray.origin).as_dvec3(),
-            direction: object.object_from_world.vector(ray.direction).as_dvec3(),
+            origin: pose.object_from_world.point(ray.origin).as_dvec3(),
+            direction: pose.object_from_world.vector(ray.direction).as_dvec3(),
             t_min: f64::from(ray.t_min),
             t_max: f64::from(ray.t_max),
         }
@@ -128,7 +128,7 @@ pub(super) struct Leaves {
 impl Leaves {
     /// Improves `best` by what the ray meets in a leaf. Never a part of the kernels, which it would only swell.
     #[inline(never)]
-    pub fn meet(&self, leaf: usize, ray: &Ray, enter: f32, best: &mut Hit) {
+    pub fn meet(&self, leaf: usize, ray: &Ray, enter: f32, motions: &Motions, best: &mut Hit) {
         let Leaf { part, object } = self.leaves[leaf];
         let (number, shape, object) = &self.objects[object as usize];
         let id = Id { object: *number, index: part };
@@ -136,20 +136,20 @@ impl Leaves {
             return;
         }
         // Hits as far as the best so far may still win by their name.
-        let local = LocalRay::new(&Ray { t_max: best.t.next_up(), ..*ray }, object);
+        let local = LocalRay::new(&Ray { t_max: best.t.next_up(), ..*ray }, &motions.pose(object, ray.time));
         if let Some(Meeting { t, u, v }) = self.shapes[*shape as usize].meet(part as usize, &local) {
-            best.improve(Hit { t: (t as f32).max(enter), u, v, id });
+            best.improve(Hit { t: (t as f32).max(enter), u, v, id, time: None });
         }
     }
 }
 
 /// The surface at a hit, in the world.
-pub(super) fn surface(shape: &dyn Analytic, object: &Object, ray: &Ray, hit: &Hit) -> Surface {
-    let local = LocalRay::new(ray, object);
+pub(super) fn surface(shape: &dyn Analytic, pose: &Pose, ray: &Ray, hit: &Hit) -> Surface {
+    let local = LocalRay::new(ray, pose);
     let meeting = Meeting { t: f64::from(hit.t), u: hit.u, v: hit.v };
     let (point, normal) = shape.surface(hit.id.index as usize, &local, &meeting);
-    let normal = object.object_from_world.transposed(normal.normalize_or(DVec3::Z).as_vec3()).normalize_or(Vec3::Z);
-    Surface { point: object.world_from_object.point(point.as_vec3()), geometric: normal, normal }
+    let normal = pose.object_from_world.transposed(normal.normalize_or(DVec3::Z).as_vec3()).normalize_or(Vec3::Z);
+    Surface { point: pose.world_from_object.point(point.as_vec3()), geometric: normal, normal }
 }
 
 /// Moves a point onto the surface where a function vanishes, given with its gradient: Newton's steps along the gradient.

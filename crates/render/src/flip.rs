@@ -9,7 +9,7 @@
     reason = "a measure is printed to six digits; no pixel of a rendering depends on it"
 )]
 
-use jaspe_render::srgb_decode;
+use jaspe_scene::srgb_decode;
 
 /// Pixels per degree of the field of view: a monitor 0.7 m wide, 3840 pixels across, seen from 0.7 m.
 const PIXELS_PER_DEGREE: f64 = 67.020_643;
@@ -17,6 +17,7 @@ const PIXELS_PER_DEGREE: f64 = 67.020_643;
 type Color = [f64; 3];
 
 /// One error per pixel. Both pictures are display-encoded, row by row, `width` pixels each.
+#[must_use]
 pub fn flip(reference: &[[f32; 3]], test: &[[f32; 3]], width: usize) -> Vec<f32> {
     let (reference, test) = (Opponent::new(reference, width), Opponent::new(test, width));
     let (seen_reference, seen_test) = (reference.seen(), test.seen());
