@@ -45,6 +45,15 @@ impl Fade {
         noise + lost * (R::constant(self.mean) - noise)
     }
 
+    /// [`Fade::apply`] for those who see no difference below [`FAINT`], and nothing but the mean from afar.
+    #[inline(always)]
+    pub fn apply_alone<R: Real>(self, noise: R, footprint: R) -> R {
+        let zero = R::constant(0.0);
+        let seen = footprint - R::constant(FAINT);
+        let faded = self.apply(noise, R::select(seen.less(zero), zero, seen));
+        R::select(R::constant(FAR).less(footprint), R::constant(self.mean), faded)
+    }
+
     /// [`Fade::apply`] for one of the parts of a footprint.
     #[inline(always)]
     pub fn apply_to_part<R: Real>(self, noise: R, footprint: R) -> R {
@@ -65,6 +74,9 @@ impl Fade {
 
 /// Up to here (in cells) a footprint is judged as a whole, from twice as much on by its parts.
 pub(crate) const NEAR: f64 = 0.125;
+
+/// Footprints below (in cells) are points to [`Fade::apply_alone`].
+pub(crate) const FAINT: f64 = 0.05;
 
 /// Beyond, only the mean is left.
 pub(crate) const FAR: f64 = 8.0;

@@ -12,12 +12,13 @@ fn random_numbers() -> impl FnMut() -> f32 {
     move || (bits() >> 40) as f32 / (1u64 << 23) as f32 - 1.0
 }
 
-/// The root mean square of the difference between the filtered sum and the average of 1024 samples over the footprint.
-fn difference(sum: &Sum, footprint: f32) -> f32 {
+/// The root mean square of the difference between the filtered sum, and the faded one, and the average of 1024 samples over the
+/// footprint.
+fn difference(sum: &Sum, footprint: f32) -> [f32; 2] {
     const FOOTPRINTS: usize = 200;
     const SAMPLES: usize = 1024;
     let mut random = random_numbers();
-    let mut squares = 0.0;
+    let mut squares = [0.0; 2];
     for _ in 0..FOOTPRINTS {
         let centre = [random() * 100.0, random() * 100.0, random() * 100.0];
         let samples: [Vec<f32>; 3] =
@@ -25,9 +26,13 @@ fn difference(sum: &Sum, footprint: f32) -> f32 {
         let mut values = vec![0.0; SAMPLES];
         sum.fill(samples.each_ref().map(Vec::as_slice), &mut values);
         let average = values.iter().sum::<f32>() / SAMPLES as f32;
-        squares += (sum.value_filtered(centre, footprint) - average).powi(2) / FOOTPRINTS as f32;
+        for (square, value) in
+            squares.iter_mut().zip([sum.value_filtered(centre, footprint), sum.value_faded(centre, footprint)])
+        {
+            *square += (value - average).powi(2) / FOOTPRINTS as f32;
+        }
     }
-    squares.sqrt()
+    squares.map(f32::sqrt)
 }
 
 #[test]
@@ -35,8 +40,9 @@ fn filtered_sums_are_near_the_average_over_the_footprint() {
     for combine in [Combine::Plain, Combine::Absolute] {
         let sum = Sum::new(Noise::new(Basis::Improved, 0), combine, 5);
         for footprint in [0.03, 0.1, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 30.0] {
-            let found = difference(&sum, footprint);
-            assert!(found < 0.02, "{combine:?} at {footprint}: {found}");
+            let [filtered, faded] = difference(&sum, footprint);
+            assert!(filtered < 0.02, "{combine:?} at {footprint}: {filtered}");
+            assert!(faded < 0.08, "{combine:?} at {footprint}, faded: {faded}");
         }
     }
 }
@@ -50,12 +56,16 @@ fn without_a_footprint_nothing_is_lost_and_with_a_large_one_the_mean_remains() {
             const COUNT: usize = 20_000;
             let columns: [Vec<f32>; 3] = std::array::from_fn(|_| (0..COUNT).map(|_| random() * 100.0).collect());
             let columns = columns.each_ref().map(Vec::as_slice);
-            let [mut values, mut sharp, mut even] = [(); 3].map(|()| vec![0.0; COUNT]);
+            let [mut values, mut sharp, mut even, mut faded] = [(); 4].map(|()| vec![0.0; COUNT]);
             sum.fill(columns, &mut values);
             sum.fill_filtered(columns, &[0.0; COUNT], &mut sharp);
             sum.fill_filtered(columns, &[1e4; COUNT], &mut even);
             assert!((0..COUNT).all(|i| sharp[i].to_bits() == values[i].to_bits()), "{basis:?} {combine:?}");
             assert!((0..COUNT).all(|i| (even[i] - even[0]).abs() < 1e-6), "{basis:?} {combine:?}");
+            sum.fill_faded(columns, &[1e4; COUNT], &mut faded);
+            assert_eq!(faded, even, "{basis:?} {combine:?}");
+            sum.fill_faded(columns, &[0.0; COUNT], &mut faded);
+            assert!((0..COUNT).all(|i| faded[i].to_bits() == values[i].to_bits()), "{basis:?} {combine:?}");
             let mean = values.iter().map(|&value| f64::from(value)).sum::<f64>() / COUNT as f64;
             if matches!(combine, Combine::Plain | Combine::Absolute) {
                 let even = f64::from(even[0]);
@@ -75,12 +85,15 @@ fn filtered_sums_have_the_same_bits_at_every_level() {
             let sum = Sum::new(Noise::new(basis, 1), combine, 5);
             let space: Vec<f32> = (0..99).map(|i| sum.value_filtered([x[i], y[i], z[i]], footprints[i])).collect();
             let plane: Vec<f32> = (0..99).map(|i| sum.value_filtered([x[i], y[i]], footprints[i])).collect();
+            let faded: Vec<f32> = (0..99).map(|i| sum.value_faded([x[i], y[i], z[i]], footprints[i])).collect();
             for level in Level::ALL {
                 let mut values = vec![0.0; 99];
                 sum.fill_filtered_at(level, [&x, &y, &z], &footprints, &mut values);
                 assert_eq!(values, space, "{basis:?} {combine:?} at {level:?}");
                 sum.fill_filtered_at(level, [&x, &y], &footprints, &mut values);
                 assert_eq!(values, plane, "{basis:?} {combine:?} at {level:?}");
+                sum.fill_faded_at(level, [&x, &y, &z], &footprints, &mut values);
+                assert_eq!(values, faded, "{basis:?} {combine:?} at {level:?}, faded");
             }
         }
     }

@@ -22,6 +22,11 @@ impl Affine {
         self.vector(p) + self.translation
     }
 
+    /// How much longer it makes vectors, on average over the axes.
+    pub fn scale(&self) -> f32 {
+        self.columns.iter().map(|column| column.length()).sum::<f32>() * (1.0 / 3.0)
+    }
+
     /// Applies the transpose of the linear part: takes normals back when `self` is the inverse map.
     #[inline(always)]
     pub fn transposed(&self, n: Vec3) -> Vec3 {

@@ -53,6 +53,17 @@ impl Camera {
         matches!(self.lens, Lens::Thinlens { lensr, .. } if lensr > 0.0)
     }
 
+    /// The angle of a pixel in the middle of the picture.
+    pub fn spread(&self) -> f32 {
+        let [width, _] = self.size;
+        match self.lens {
+            Lens::Pinhole { .. } => 2.0 * self.half[0] / width,
+            Lens::Thinlens { fdist, .. } => 2.0 * self.half[0] / (width * fdist),
+            Lens::Spherical => std::f32::consts::TAU / width,
+            Lens::Fisheye => std::f32::consts::PI / width,
+        }
+    }
+
     /// Whether rays need a time sample.
     pub fn is_moving(&self) -> bool {
         self.moving.is_some()

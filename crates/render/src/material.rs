@@ -120,14 +120,16 @@ pub(crate) struct Procedural {
 
 impl Procedural {
     /// Colours at all points, in the dialect's working space. The third coordinate of points in texture coordinates
-    /// means nothing.
-    pub fn evaluate(&self, points: &Rows, colors: &mut Vec<[f32; 3]>) {
+    /// means nothing. With footprints, sides in the texture's space, each colour is the mean over one.
+    pub fn evaluate(&self, points: &Rows, footprints: Option<&[f32]>, colors: &mut Vec<[f32; 3]>) {
         let count = points.x.len();
         colors.resize(count, [0.0; 3]);
         let [x, y, z] = points.slices(count);
-        match self.texture.space() {
-            Space::Uv => self.texture.colors([x, y], colors),
-            Space::Local | Space::World => self.texture.colors([x, y, z], colors),
+        match (self.texture.space(), footprints) {
+            (Space::Uv, None) => self.texture.colors([x, y], colors),
+            (Space::Uv, Some(footprints)) => self.texture.colors_seen([x, y], footprints, colors),
+            (_, None) => self.texture.colors([x, y, z], colors),
+            (_, Some(footprints)) => self.texture.colors_seen([x, y, z], footprints, colors),
         }
         if self.decode {
             colors.iter_mut().for_each(|color| *color = color.map(decode_display));

@@ -120,8 +120,8 @@ impl Report {
                 colors.iter_mut().enumerate().for_each(|(i, color)| *color = picture.nearest(uv(i)).to_array());
             }
             Albedo::Procedural(procedural) => match procedural.texture.space() {
-                Space::World => procedural.evaluate(position, colors),
-                Space::Local => procedural.evaluate(outward, colors),
+                Space::World => procedural.evaluate(position, None, colors),
+                Space::Local => procedural.evaluate(outward, None, colors),
                 Space::Uv => {
                     texture_points.resize(count);
                     if *round {
@@ -129,7 +129,7 @@ impl Report {
                     } else {
                         (0..count).for_each(|i| texture_points.set(i, uv(i).extend(0.0)));
                     }
-                    procedural.evaluate(texture_points, colors);
+                    procedural.evaluate(texture_points, None, colors);
                 }
             },
         }

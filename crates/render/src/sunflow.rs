@@ -18,7 +18,7 @@ use jaspe_texture::Space;
 
 use crate::clock::{Clock, Spent, Stage};
 use crate::environment::Environment;
-use crate::geometry::{Geometry, Hits, Rays, Rows, Scratch, Surface};
+use crate::geometry::{Geometry, Hit, Hits, Rays, Rows, Scratch, Surface};
 use crate::light::Light;
 use crate::material::{Albedo, Coat, Gloss, Response};
 use crate::options::{Look, Observer};
@@ -61,11 +61,18 @@ pub(crate) enum Caustics {
 /// Rays of a wave, about, where every sample sends many.
 const RAYS: usize = 32_768;
 
+/// Where a texture is looked at, and the side of what is seen of it there.
+#[derive(Default)]
+struct TexturePoints {
+    points: Rows,
+    footprints: Vec<f32>,
+}
+
 /// One thread's room for the hits of a batch.
 #[derive(Default)]
 pub(crate) struct Room {
     points: Points,
-    texture_points: Rows,
+    texture_points: TexturePoints,
     colors: Vec<[f32; 3]>,
     /// Of the coat.
     gloss: Vec<[f32; 3]>,
@@ -187,7 +194,7 @@ impl Path {
 }
 
 /// Colours of a batch, one per member.
-fn paint(albedo: &Albedo, batch: &Batch<'_>, points: &Points, texture_points: &mut Rows, colors: &mut Vec<[f32; 3]>) {
+fn paint(albedo: &Albedo, batch: &Batch<'_>, points: &Points, seen: &mut TexturePoints, colors: &mut Vec<[f32; 3]>) {
     let (geometry, point) = (batch.geometry, &points.surfaces.point);
     let uv = |i: usize| geometry.uv(&batch.hit(i), point.get(i));
     let count = batch.members.len();
@@ -199,16 +206,25 @@ fn paint(albedo: &Albedo, batch: &Batch<'_>, points: &Points, texture_points: &m
         }
         Albedo::Procedural(procedural) => {
             let local = |i: usize| geometry.pose(&batch.hit(i)).object_from_world.point(point.get(i));
+            let TexturePoints { points: texture_points, footprints } = seen;
             texture_points.resize(count);
             match procedural.texture.space() {
-                Space::World => return procedural.evaluate(point, colors),
+                Space::World => {}
                 Space::Local => (0..count).for_each(|i| texture_points.set(i, local(i))),
                 Space::Uv => (0..count).for_each(|i| texture_points.set(i, uv(i).extend(0.0))),
             }
-            procedural.evaluate(texture_points, colors);
+            let scale = |hit: &Hit| match procedural.texture.space() {
+                Space::World => 1.0,
+                Space::Local => geometry.pose(hit).object_from_world.scale(),
+                Space::Uv => geometry.uv_scale(hit),
+            };
+            footprints.clear();
+            footprints.extend((0..count).map(|i| points.footprint(batch, i) * scale(&batch.hit(i))));
+            let texture_points = if procedural.texture.space() == Space::World { point } else { &*texture_points };
+            procedural.evaluate(texture_points, Some(footprints), colors);
         }
         Albedo::Blend { color, over, amount } => {
-            paint(over, batch, points, texture_points, colors);
+            paint(over, batch, points, seen, colors);
             let mix = |over: &mut [f32; 3]| *over = color.lerp(Vec3::from_array(*over), *amount).to_array();
             colors.iter_mut().for_each(mix);
         }
@@ -317,6 +333,7 @@ impl Sunflow {
     /// Queues a secondary ray, unless it would bring nothing.
     fn queue(&self, point: &Point<'_>, [origin, direction]: [Vec3; 2], path: Path, queues: &mut Queues<Vec3>) {
         if path.weight.max_element() > 0.0 && path.weight.is_finite() {
+            let path = Path { cone: point.cone(path.kind), ..path };
             queues.next.push(point.leave(origin, direction), path);
         }
     }

@@ -53,6 +53,22 @@ impl Depth {
     }
 }
 
+/// The cone around a ray for which it stands ([Amanatides 1984] "Ray Tracing with Cones").
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Cone {
+    /// Where the ray begins.
+    pub width: f32,
+    /// By how much the width grows per unit of length.
+    pub spread: f32,
+}
+
+impl Cone {
+    /// What becomes of it on the way.
+    pub fn after(self, length: f32) -> Cone {
+        Cone { width: self.width + self.spread * length, ..self }
+    }
+}
+
 /// What a ray is, beside where it goes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Path {
@@ -64,6 +80,7 @@ pub(crate) struct Path {
     pub index: u32,
     pub kind: RayKind,
     pub depth: Depth,
+    pub cone: Cone,
 }
 
 /// Rays that look for surfaces.
@@ -114,6 +131,8 @@ pub(crate) struct Samples {
     pub keys: Vec<SampleKey>,
     /// How many each pixel has once all are traced.
     pub of: u32,
+    /// That of each sample's cone.
+    pub spread: f32,
 }
 
 impl Samples {
@@ -319,7 +338,8 @@ impl<R: Rules> Workspace<R> {
         let Workspace { queues: Queues { next, nodes, stats, .. }, results, .. } = self;
         next.clear();
         std::mem::swap(&mut next.rays, &mut samples.rays);
-        let path = Path { weight: Vec3::ONE, node: 0, index: 0, kind: RayKind::Camera, depth: Depth::default() };
+        let (kind, depth, cone) = (RayKind::Camera, Depth::default(), Cone { width: 0.0, spread: samples.spread });
+        let path = Path { weight: Vec3::ONE, node: 0, index: 0, kind, depth, cone };
         next.paths.extend((0..).zip(&samples.keys).map(|(node, key)| Path { node, index: key.index, ..path }));
         nodes.clear();
         nodes.resize(count, R::Node::default());

@@ -142,3 +142,27 @@ fn what_moves_is_blurred() {
     let shown = film("type pinhole eye 0 0 50 target 0 0 0 up 0 1 0 fov 40 aspect 1", moving);
     assert!(shown.pixels[32 * 64 + 31][0] > 0.9, "time 0 is the middle step");
 }
+
+#[test]
+fn stone_far_away_is_an_even_grey_at_one_sample() {
+    let floor = |target: &str| {
+        let text = format!(
+            "image {{ resolution 64 64 aa 0 0 filter box }}
+             camera {{ type pinhole eye 0 0 {target} target 0 0 0 up 0 1 0 fov 40 aspect 1 }}
+             light {{ type directional source 0 0 1e4 target 0 0 0 radius 1e5 emit 3 3 3 }}
+             shader {{ name granite type stone }}
+             object {{ shader granite type plane p 0 0 0 n 0 0 1 }}"
+        );
+        let loader = MemoryLoader::default();
+        let (scene, _) = parse(Path::new("floor.sc"), text.as_bytes(), &loader);
+        let scene = compile(&scene, &loader, &CompileOptions::default()).scene.expect("no errors");
+        let (film, _) = render(&scene, &RenderOptions::default(), &()).expect("not cancelled");
+        let values: Vec<f32> = film.pixels.iter().map(|pixel| pixel[0]).collect();
+        let mean = values.iter().sum::<f32>() / values.len() as f32;
+        let deviation = values.iter().map(|value| (value - mean).powi(2)).sum::<f32>() / values.len() as f32;
+        (mean, deviation.sqrt() / mean)
+    };
+    let ((near, speckled), (far, even)) = (floor("0.3"), floor("100"));
+    assert!(speckled > 0.15 && even < 0.01, "{speckled} {even}");
+    assert!((far / near - 1.0).abs() < 0.1, "as bright as from near: {far} {near}");
+}

@@ -143,17 +143,48 @@ impl Texture {
     /// # Panics
     /// When the slices differ in length.
     pub fn evaluate_at<const D: usize>(&self, level: Level, points: [&[f32]; D], coefficients: &mut [f32]) {
-        for coordinates in points {
-            assert_eq!(coordinates.len(), coefficients.len(), "all slices have the same length");
+        self.fill(level, points, None, coefficients);
+    }
+
+    /// [`Texture::evaluate`], where each coefficient is an average over a footprint: a square or cube of that side, in units of
+    /// the space. What is too fine to be seen fades to its mean, so that a far stone is grey and does not sparkle; a side
+    /// of zero gives the same bits as [`Texture::evaluate`].
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn evaluate_seen<const D: usize>(&self, points: [&[f32]; D], footprints: &[f32], coefficients: &mut [f32]) {
+        self.fill(simd::level(), points, Some(footprints), coefficients);
+    }
+
+    fn fill<const D: usize>(
+        &self,
+        level: Level,
+        points: [&[f32]; D],
+        footprints: Option<&[f32]>,
+        coefficients: &mut [f32],
+    ) {
+        for row in points.into_iter().chain(footprints) {
+            assert_eq!(row.len(), coefficients.len(), "all slices have the same length");
         }
+        let factor = self.factor() as f32;
         let mut along = [0.0; BLOCK];
         let mut moved = [[0.0; BLOCK]; D];
         let mut sums = [0.0; BLOCK];
         for (block, coefficients) in coefficients.chunks_mut(BLOCK).enumerate() {
             let (start, count) = (block * BLOCK, coefficients.len());
             self.place(points, start..start + count, &mut along, &mut moved);
-            self.sum.fill_at(level, moved.each_ref().map(|axis| &axis[..count]), &mut sums[..count]);
-            self.material.shape_all(level, [&along[..count], &sums[..count]], coefficients);
+            let moved = moved.each_ref().map(|axis| &axis[..count]);
+            let Some(footprints) = footprints else {
+                self.sum.fill_at(level, moved, &mut sums[..count]);
+                self.material.shape_all(level, [&along[..count], &sums[..count]], coefficients);
+                continue;
+            };
+            let mut sides = [0.0; BLOCK];
+            for (side, footprint) in sides.iter_mut().zip(&footprints[start..start + count]) {
+                *side = footprint * factor;
+            }
+            self.sum.fill_faded_at(level, moved, &sides[..count], &mut sums[..count]);
+            self.material.shape_seen_all(level, [&along[..count], &sums[..count], &sides[..count]], coefficients);
         }
     }
 
@@ -191,15 +222,28 @@ impl Texture {
     /// # Panics
     /// When the slices differ in length.
     pub fn colors<const D: usize>(&self, points: [&[f32]; D], colors: &mut [[f32; 3]]) {
-        for coordinates in points {
-            assert_eq!(coordinates.len(), colors.len(), "all slices have the same length");
+        self.paint(points, None, colors);
+    }
+
+    /// The colours at many points, each over a footprint. See [`Texture::evaluate_seen`] and [`Texture::color`].
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn colors_seen<const D: usize>(&self, points: [&[f32]; D], footprints: &[f32], colors: &mut [[f32; 3]]) {
+        self.paint(points, Some(footprints), colors);
+    }
+
+    fn paint<const D: usize>(&self, points: [&[f32]; D], footprints: Option<&[f32]>, colors: &mut [[f32; 3]]) {
+        for row in points.into_iter().chain(footprints) {
+            assert_eq!(row.len(), colors.len(), "all slices have the same length");
         }
         let level = simd::level();
         let mut coefficients = [0.0; BLOCK];
         for (block, colors) in colors.chunks_mut(BLOCK).enumerate() {
             let (start, count) = (block * BLOCK, colors.len());
             let points = points.map(|coordinates| &coordinates[start..start + count]);
-            self.evaluate_at(level, points, &mut coefficients[..count]);
+            let footprints = footprints.map(|sides| &sides[start..start + count]);
+            self.fill(level, points, footprints, &mut coefficients[..count]);
             for (color, &coefficient) in colors.iter_mut().zip(&coefficients) {
                 *color = self.color(coefficient);
             }
@@ -216,6 +260,16 @@ impl Texture {
     pub(crate) fn factor(&self) -> f64 {
         let of_space = || f64::from(self.frequencies().of(self.space)) / self.scale;
         f64::from(self.cells_per_unit.unwrap_or_else(of_space) as f32)
+    }
+}
+
+/// A material's shape over footprints as an evaluation over slices.
+pub(crate) struct Seen<'a, K>(pub(crate) &'a K);
+
+impl<K: crate::material::Kind> Kernel<3> for Seen<'_, K> {
+    #[inline(always)]
+    fn run<R: Real>(&self, [along, sum, side]: [R; 3]) -> R {
+        self.0.shape_seen(along, sum, side)
     }
 }
 

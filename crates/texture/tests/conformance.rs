@@ -178,6 +178,30 @@ fn every_level_and_length_gives_the_same_bits() {
 }
 
 #[test]
+fn what_is_too_far_to_be_seen_is_the_mean() {
+    const COUNT: usize = 20_000;
+    for (name, texture) in variants() {
+        let [x, y, z] = cube(COUNT, 50.0);
+        let points = [&x[..], &y, &z];
+        let [mut near, mut sharp, mut far] = [(); 3].map(|()| vec![f32::NAN; COUNT]);
+        texture.evaluate(points, &mut near);
+        texture.evaluate_seen(points, &[0.0; COUNT], &mut sharp);
+        assert!(near.iter().zip(&sharp).all(|(near, sharp)| near.to_bits() == sharp.to_bits()), "{name}");
+        texture.evaluate_seen(points, &[1e3; COUNT], &mut far);
+        let mean = near.iter().map(|&value| f64::from(value)).sum::<f64>() / COUNT as f64;
+        let spread = far.iter().map(|&value| (f64::from(value) - mean).abs()).fold(0.0, f64::max);
+        assert!(spread < 0.1, "{name}: up to {spread} off the mean {mean}");
+        // What is half seen lies between.
+        let cell = 1.0 / texture.frequencies().of(Space::Local);
+        let mut seen = vec![f32::NAN; COUNT];
+        texture.evaluate_seen(points, &vec![0.3 * cell; COUNT], &mut seen);
+        let variance =
+            |values: &[f32]| values.iter().map(|&value| (f64::from(value) - mean).powi(2)).sum::<f64>() / COUNT as f64;
+        assert!(variance(&seen) < variance(&near), "{name}: {} {}", variance(&seen), variance(&near));
+    }
+}
+
+#[test]
 fn the_shapes_are_those_of_the_figures() {
     let point = [0.31f32, -0.52, 0.77];
     for declaration in Texture::ALL {

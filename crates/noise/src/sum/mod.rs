@@ -48,6 +48,15 @@ struct Scales {
 /// More would reach past every number's range.
 const MOST_OCTAVES: u32 = 1024;
 
+/// By what the noise over a footprint is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Judge {
+    /// By the noise in each of its parts.
+    Parts,
+    /// By the noise at its centre.
+    Point,
+}
+
 impl Sum {
     /// A sum of so many octaves (at most 1024), of lacunarity 2 and gain ½; of none it is zero.
     pub fn new(noise: Noise, combine: Combine, octaves: u32) -> Self {
@@ -152,7 +161,14 @@ impl Sum {
     /// in space, plain and absolute, is below 0.02 for footprints of any size.
     #[inline(always)]
     pub fn value_filtered<R: Real, const D: usize>(&self, point: [R; D], footprint: R) -> R {
-        self.evaluate::<R, D, false>(point, Some(footprint)).value
+        self.evaluate::<R, D, false>(point, Some((footprint, Judge::Parts))).value
+    }
+
+    /// [`Sum::value_filtered`], judged by the noise at the point alone: hardly slower than [`Sum::value`], and farther off the true
+    /// average, by 0.08 at the most (root mean square). It is made for pictures, whose pixels hide that.
+    #[inline(always)]
+    pub fn value_faded<R: Real, const D: usize>(&self, point: [R; D], footprint: R) -> R {
+        self.evaluate::<R, D, false>(point, Some((footprint, Judge::Point))).value
     }
 
     /// [`Sum::value_filtered`], and its exact derivative along each axis, where the footprint stays the same.
@@ -164,7 +180,11 @@ impl Sum {
     }
 
     #[inline(always)]
-    fn evaluate<R: Real, const D: usize, const G: bool>(&self, point: [R; D], footprint: Option<R>) -> Dual<R, D> {
+    fn evaluate<R: Real, const D: usize, const G: bool>(
+        &self,
+        point: [R; D],
+        footprint: Option<(R, Judge)>,
+    ) -> Dual<R, D> {
         let fade = Fade::of(self.noise.basis(), self.combine.folds(), D);
         let mut partial = Partial::new();
         for (&frequency, &amplitude) in self.scales.frequencies.iter().zip(&self.scales.amplitudes) {
@@ -173,7 +193,10 @@ impl Sum {
                 *coordinate = *coordinate * R::constant(frequency);
             }
             let mut noise = self.combine.fold::<R, D, G>(self.noise.octave::<R, D, G>(scaled, frequency));
-            if let Some(footprint) = footprint {
+            if let Some((footprint, Judge::Point)) = footprint {
+                noise.value = fade.apply_alone(noise.value, footprint * R::constant(frequency));
+            }
+            if let Some((footprint, Judge::Parts)) = footprint {
                 let footprint = footprint * R::constant(frequency);
                 let mut total = R::constant(0.0);
                 for part in 0..filter::parts(D) {
@@ -310,7 +333,30 @@ impl Sum {
         values: &mut [f32],
     ) {
         assert_eq!(footprints.len(), values.len(), "all slices have the same length");
-        self.fill_by_octaves(level, &points, Some(footprints), values, &mut []);
+        self.fill_by_octaves(level, &points, Some((footprints, Judge::Parts)), values, &mut []);
+    }
+
+    /// The values at many points, each with its footprint: the same bits as [`Sum::value_faded`] in single precision.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn fill_faded<const D: usize>(&self, points: [&[f32]; D], footprints: &[f32], values: &mut [f32]) {
+        self.fill_faded_at(simd::level(), points, footprints, values);
+    }
+
+    /// [`Sum::fill_faded`] with the instructions of a level, at most those of the machine. For tests and measurements.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn fill_faded_at<const D: usize>(
+        &self,
+        level: Level,
+        points: [&[f32]; D],
+        footprints: &[f32],
+        values: &mut [f32],
+    ) {
+        assert_eq!(footprints.len(), values.len(), "all slices have the same length");
+        self.fill_by_octaves(level, &points, Some((footprints, Judge::Point)), values, &mut []);
     }
 
     #[inline(always)]

@@ -1,9 +1,9 @@
 //! Sums over slices, octave by octave: some points at a time, whose noise the fastest kernel for it computes, and whose
 //! sums stay in the first cache.
 
-use super::Sum;
 use super::combine::{Combine, Partial};
-use crate::filter::{self, FAR, Fade, NEAR};
+use super::{Judge, Sum};
+use crate::filter::{self, FAINT, FAR, Fade, NEAR};
 use crate::noise::Octave;
 use crate::number::Dual;
 use crate::simd::{self, Level, Task};
@@ -18,7 +18,7 @@ impl Sum {
         &self,
         level: Level,
         points: &[&[f32]],
-        footprints: Option<&[f32]>,
+        footprints: Option<(&[f32], Judge)>,
         values: &mut [f32],
         gradient: &mut [&mut [f32]],
     ) {
@@ -40,7 +40,7 @@ impl Sum {
         &self,
         level: Level,
         points: &[&[f32]],
-        footprints: Option<&[f32]>,
+        footprints: Option<(&[f32], Judge)>,
         values: &mut [f32],
         gradient: &mut [&mut [f32]],
     ) {
@@ -49,31 +49,41 @@ impl Sum {
         for start in (0..values.len()).step_by(CHUNK) {
             let at = start..values.len().min(start + CHUNK);
             let mut partials = [Partial::<f32, D>::new(); CHUNK];
+            let mut averages;
             for (&frequency, &amplitude) in self.scales.frequencies.iter().zip(&self.scales.amplitudes) {
                 for (scaled, axis) in buffers.scaled.iter_mut().zip(points) {
                     for (scaled, coordinate) in scaled.iter_mut().zip(&axis[at.clone()]) {
                         *scaled = coordinate * frequency as f32;
                     }
                 }
+                let mut sides = [0.0; CHUNK];
+                for (side, footprint) in sides.iter_mut().zip(footprints.map_or(&[][..], |(all, _)| &all[at.clone()])) {
+                    *side = footprint * frequency as f32;
+                }
                 let octave = Octave { noise: &self.noise, frequency };
                 let scaled = buffers.scaled.each_ref().map(|axis| &axis[..at.len()]);
                 let noise = &mut buffers.noise[..at.len()];
-                if G {
+                let far = |side: &f32| f64::from(*side) > FAR;
+                if footprints.is_some() && sides[..at.len()].iter().all(far) {
+                    // Nothing is left but the mean, whatever the noise is.
+                    noise.fill(0.0);
+                } else if G {
                     let mut slopes = buffers.slopes.each_mut().map(|axis| &mut axis[..at.len()]);
                     octave.fill(level, &scaled, noise, &mut slopes);
                 } else {
                     octave.fill(level, &scaled, noise, &mut []);
                 }
-                let mut filtered = None;
-                if let Some(footprints) = footprints {
-                    let mut sides = [0.0; CHUNK];
-                    for (side, footprint) in sides.iter_mut().zip(&footprints[at.clone()]) {
-                        *side = footprint * frequency as f32;
+                let near = |side: &f32| f64::from(*side) <= FAINT;
+                let filtered = match footprints {
+                    None => Filtered::Not,
+                    Some((_, Judge::Point)) if sides[..at.len()].iter().all(near) => Filtered::Not,
+                    Some((_, Judge::Point)) => Filtered::Alone(&sides),
+                    Some((_, Judge::Parts)) => {
+                        averages = self.average_parts::<D>(level, &octave, fade, &sides[..at.len()], &buffers.scaled);
+                        Filtered::Parts(&sides, &averages)
                     }
-                    let averages = self.average_parts::<D>(level, &octave, fade, &sides[..at.len()], &buffers.scaled);
-                    filtered = Some((sides, averages));
-                }
-                let (combine, buffers, filtered) = (self.combine, &buffers, filtered.as_ref());
+                };
+                let (combine, buffers) = (self.combine, &buffers);
                 let partials = &mut partials[..at.len()];
                 simd::run(level, Add::<D, G> { combine, frequency, amplitude, fade, filtered, buffers, partials });
             }
@@ -146,14 +156,22 @@ struct Buffers<const D: usize> {
     slopes: [[f32; CHUNK]; D],
 }
 
+/// The sides of footprints in cells, and what their noise is judged by.
+#[derive(Clone, Copy)]
+enum Filtered<'a> {
+    Not,
+    Alone(&'a [f32; CHUNK]),
+    /// With the averages of the parts.
+    Parts(&'a [f32; CHUNK], &'a [f32; CHUNK]),
+}
+
 /// Adds an octave at the points of a chunk.
 struct Add<'a, const D: usize, const G: bool> {
     combine: Combine,
     frequency: f64,
     amplitude: f64,
     fade: Fade,
-    /// The sides of the footprints in cells, and the averages of their parts.
-    filtered: Option<&'a ([f32; CHUNK], [f32; CHUNK])>,
+    filtered: Filtered<'a>,
     buffers: &'a Buffers<D>,
     partials: &'a mut [Partial<f32, D>],
 }
@@ -167,9 +185,13 @@ impl<const D: usize, const G: bool> Task for Add<'_, D, G> {
                 noise.gradient[axis] = self.buffers.slopes[axis][i];
             }
             let mut noise = self.combine.fold::<f32, D, G>(noise);
-            if let Some((sides, averages)) = self.filtered {
-                let whole = self.fade.apply(noise.value, sides[i]);
-                noise.value = self.fade.blend(whole, averages[i], sides[i]);
+            match self.filtered {
+                Filtered::Not => {}
+                Filtered::Alone(sides) => noise.value = self.fade.apply_alone(noise.value, sides[i]),
+                Filtered::Parts(sides, averages) => {
+                    let whole = self.fade.apply(noise.value, sides[i]);
+                    noise.value = self.fade.blend(whole, averages[i], sides[i]);
+                }
             }
             partial.add::<G>(self.combine, self.frequency, self.amplitude, noise);
         }

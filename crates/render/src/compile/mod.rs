@@ -98,6 +98,7 @@ impl CompiledScene {
         match &self.meaning {
             &Meaning::Sunflow { ref camera, shutter, jitter, .. } => {
                 samples.resize(shots.count());
+                samples.spread = camera.spread() / (shots.of as f32).sqrt();
                 let moving = self.world.geometry.is_moving();
                 samples.rays.time.clear();
                 for (i, ([x, y], index)) in shots.iter().enumerate() {

@@ -173,6 +173,36 @@ impl Geometry {
         }
     }
 
+    /// One over the radius of an object that is a sphere; 0 for all else.
+    pub fn curvature(&self, object: u32) -> f32 {
+        match self.objects[object as usize].shape {
+            Shape::Sphere { radius, .. } => 1.0 / radius,
+            _ => 0.0,
+        }
+    }
+
+    /// How much of the texture coordinates a unit of length holds; 0 where that is not known.
+    pub fn uv_scale(&self, hit: &Hit) -> f32 {
+        let object = &self.objects[hit.id.object as usize];
+        let scale = match object.shape {
+            // Half a turn is 1.
+            Shape::Sphere { .. } | Shape::Ellipsoid => {
+                self.pose(hit).object_from_world.scale() * std::f32::consts::FRAC_1_PI
+            }
+            Shape::Plane(index) => {
+                self.planes[index as usize].uv.map_or(0.0, |[du, dv]| (du.length() * dv.length()).sqrt())
+            }
+            Shape::Mesh(index) | Shape::MeshInstance(index) => {
+                let uvs = self.meshes[index as usize].triangle_uvs(hit.id.index as usize);
+                uvs.zip(self.triangle(hit)).map_or(0.0, |([p, q, r], [a, b, c])| {
+                    ((q - p).perp_dot(r - p).abs() / (b - a).cross(c - a).length()).sqrt()
+                })
+            }
+            Shape::Spheres(_) | Shape::SpheresInstance(_) | Shape::Analytic(_) => 0.0,
+        };
+        if scale.is_finite() { scale } else { 0.0 }
+    }
+
     /// The direction in which the second texture coordinate grows, in the world; of spheres that of the parallels
     /// (format reference, §3.13). `None` where the shape has none.
     pub fn tangent(&self, hit: &Hit, point: Vec3) -> Option<Vec3> {

@@ -350,7 +350,7 @@ fn spawn(path: &Path, ray: Ray, share: f32, kind: RayKind, queues: &mut Queues<G
     let node = queues.nodes.len() as u32;
     queues.nodes.push(Gathered { parent: path.node, share, ..Gathered::default() });
     let depth = if kind == RayKind::Refraction { path.depth.refracted() } else { path.depth.reflected() };
-    queues.next.push(ray, Path { weight: Vec3::ONE, node, index: path.index, kind, depth });
+    queues.next.push(ray, Path { weight: Vec3::ONE, node, index: path.index, kind, depth, cone: path.cone });
 }
 
 /// The refracted direction. (Snell's law has `m |h|` where the original has `m`.)

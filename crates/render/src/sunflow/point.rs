@@ -7,7 +7,11 @@ use crate::geometry::{Hit, Id, Ids, Ray, Rows, Surface, Surfaces};
 use crate::math::{self, offset};
 use crate::modifier::Place;
 use crate::sampler::SampleKey;
-use crate::wave::{Batch, Path};
+use crate::wave::{Batch, Cone, Path, RayKind};
+
+/// Spread of the cones of rays into glossy lobes, and of rays that gather light: about what one of some sixteen rays stands for.
+const GLOSSY: f32 = 0.1;
+const GATHER: f32 = 0.5;
 
 /// A hit, ready to be shaded: everything faces the ray.
 pub(super) struct Point<'a> {
@@ -30,6 +34,8 @@ pub(super) struct Point<'a> {
     pub front: Vec3,
     /// A primitive that a ray leaving this point cannot meet again: flat ones.
     pub skip: Id,
+    /// One over the radius of a sphere, seen from outside; 0 for all else.
+    curvature: f32,
 }
 
 /// The hits of a batch in rows: see [`Point`] for what they mean.
@@ -61,6 +67,18 @@ impl Point<'_> {
     /// A ray from here to wherever it goes.
     pub fn leave(&self, origin: Vec3, direction: Vec3) -> Ray {
         Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: self.skip, time: self.hit.time }
+    }
+
+    /// The cone of a ray that goes on from here. A mirror that bulges spreads it, and blurred rays stand for much.
+    pub fn cone(&self, kind: RayKind) -> Cone {
+        let here = self.path.cone.after(self.hit.t);
+        let spread = match kind {
+            RayKind::Camera | RayKind::Refraction => here.spread,
+            RayKind::Reflection => here.spread + 2.0 * here.width * self.curvature,
+            RayKind::Glossy => here.spread.max(GLOSSY),
+            RayKind::Gather => here.spread.max(GATHER),
+        };
+        Cone { spread, ..here }
     }
 
     /// How many rays go out of as many as are asked for.
@@ -129,6 +147,12 @@ impl Points {
         }
     }
 
+    /// The side of the square of the surface for which a ray stands: between the sides of the slanting patch that it sees.
+    pub fn footprint(&self, batch: &Batch<'_>, i: usize) -> f32 {
+        let t = batch.hits.t[batch.members[i] as usize];
+        batch.path(i).cone.after(t).width / self.cosine[i].max(0.01).sqrt()
+    }
+
     pub fn get<'a>(&self, batch: &Batch<'a>, i: usize, color: Vec3, gloss: Vec3) -> Point<'a> {
         let member = batch.members[i] as usize;
         let path = &batch.paths[member];
@@ -146,6 +170,7 @@ impl Points {
             gloss,
             front: self.front.get(i),
             skip: self.skip.get(i),
+            curvature: if self.inside[i] { 0.0 } else { batch.geometry.curvature(batch.hits.id.object[member]) },
         }
     }
 }

@@ -40,6 +40,13 @@ impl Kind for Marble {
         }
     }
 
+    /// Over a footprint the argument spreads by the slope of the bands, 1, and by that of the noise, which is about as much:
+    /// by a variance of 2 side² / 12, which takes exp(−variance / 2) of a wave.
+    #[inline(always)]
+    fn shape_seen<R: Real>(&self, along: R, sum: R, side: R) -> R {
+        self.shape(along, sum) * math::exp(side * side * R::constant(-1.0 / 12.0))
+    }
+
     fn coefficient_range(&self, _: [f32; 2]) -> [f32; 2] {
         [-1.000_001, 1.000_001]
     }

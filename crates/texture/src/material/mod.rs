@@ -14,7 +14,7 @@ use crate::args::Args;
 use crate::declare::{self, Declaration, Parameter, Value};
 use crate::finish::{Finish, Height, Part};
 use crate::space::{Frequencies, Space};
-use crate::texture::Shape;
+use crate::texture::{Seen, Shape};
 
 /// A material: its declaration, its constants, and the one function that is its own.
 pub(crate) trait Kind: Sized {
@@ -44,6 +44,13 @@ pub(crate) trait Kind: Sized {
 
     /// The coefficient w from X.x (`along`) and the noise sum T(X), with X the point in texture space.
     fn shape<R: Real>(&self, along: R, sum: R) -> R;
+
+    /// The coefficient's average over a footprint of this side (in units of X): the sum is averaged already. A side of zero
+    /// gives the same bits as [`Kind::shape`]. Enough where the shape is linear, as it is where nothing else is said.
+    #[inline(always)]
+    fn shape_seen<R: Real>(&self, along: R, sum: R, _side: R) -> R {
+        self.shape(along, sum)
+    }
 
     /// The height of the surface, without a jump, in parts of [`Finish::relief`]: the coefficient, if nothing else is said.
     #[inline(always)]
@@ -134,6 +141,10 @@ macro_rules! materials {
                         $(Material::$kind(kind) => simd::map_at(level, &Height { kind, part }, inputs, output),)*
                     }
                 }
+            }
+
+            pub(crate) fn shape_seen_all(&self, level: Level, inputs: [&[f32]; 3], coefficients: &mut [f32]) {
+                match self { $(Material::$kind(kind) => simd::map_at(level, &Seen(kind), inputs, coefficients),)* }
             }
 
             pub(crate) fn shape_all(&self, level: Level, inputs: [&[f32]; 2], coefficients: &mut [f32]) {

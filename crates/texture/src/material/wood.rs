@@ -37,6 +37,24 @@ impl Kind for Wood {
         rings - rings.floor()
     }
 
+    /// Rings are averaged over the part of a ring that a footprint covers: T changes by about 0.8 per unit. The integral of the
+    /// fractional part of r is (⌊r⌋ + frac(r)²) / 2.
+    #[inline(always)]
+    fn shape_seen<R: Real>(&self, along: R, sum: R, side: R) -> R {
+        let half = side * R::constant(0.5 * 15.0 * 0.8);
+        let rings = R::constant(15.0) * sum;
+        // Twice the integral, from the ring in which the point lies.
+        let base = rings.floor();
+        let integral = |end: R| {
+            let end = end - base;
+            let whole = end.floor();
+            let part = end - whole;
+            whole + part * part
+        };
+        let average = (integral(rings + half) - integral(rings - half)) / (half * R::constant(4.0));
+        R::select(half.less(R::constant(1e-3)), self.shape(along, sum), average)
+    }
+
     /// p⁴ (1 − p)² of the part p of a ring, times what makes its maximum 1 (at p = 2/3): no jump at the ring's edge, and
     /// no crease.
     #[inline(always)]
