@@ -172,8 +172,8 @@ fn evaluate<'py, T: Number, const D: usize>(
     gradient: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = points.py();
-    let values = points::results::<T>(py, points.shape(), &[]);
-    let slopes = if gradient { Some(points::results::<T>(py, points.shape(), &[D])) } else { None };
+    let values = points::results::<T>(py, points.shape(), &[])?;
+    let slopes = if gradient { Some(points::results::<T>(py, points.shape(), &[D])?) } else { None };
     {
         let mut values = values.readwrite();
         let mut slopes = slopes.as_ref().map(|slopes| slopes.readwrite());

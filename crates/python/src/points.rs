@@ -1,12 +1,14 @@
 //! Arrays of points: of any shape, strides and kind of number, as columns of coordinates, a chunk at a time.
 
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 
 use numpy::ndarray::{ArrayView2, ArrayViewD, Axis, Slice};
-use numpy::{Element, PyArray, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArrayMethods as _};
+use numpy::{Element, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArrayMethods as _};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 use rayon::prelude::*;
 
 use crate::work;
@@ -14,8 +16,8 @@ use crate::work;
 /// Points that are worked on at a time by one thread: their columns stay in the fastest caches.
 pub const CHUNK: usize = 2048;
 
-/// Points between two looks for Ctrl-C.
-const SLAB: usize = 128 * CHUNK;
+/// So few points are done before anybody presses Ctrl-C.
+const SHORT: usize = 64 * CHUNK;
 
 /// The coordinates of points along the last axis, in single or double precision.
 pub enum Points<'py> {
@@ -95,10 +97,18 @@ fn tuple(shape: &[usize]) -> String {
     }
 }
 
-/// An array for results: zeros, of the shape of the points without their last axis, with these axes added.
-pub fn results<'py, T: Element>(py: Python<'py>, points: &[usize], added: &[usize]) -> Bound<'py, PyArrayDyn<T>> {
+/// An array for results, of the shape of the points without their last axis, with these axes added. What it holds is left over
+/// from elsewhere, until all of it is written. (NumPy asks for large pages where it need not clear them: with zeros, the system would
+/// take longer for the pages than the noise for the values.)
+pub fn results<'py, T: Element>(
+    py: Python<'py>,
+    points: &[usize],
+    added: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     let shape = [&points[..points.len() - 1], added].concat();
-    PyArray::zeros(py, shape, false)
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let array = numpy.call_method1(intern!(py, "empty"), (PyTuple::new(py, shape)?, T::get_dtype(py)))?;
+    Ok(array.cast_into()?)
 }
 
 /// The array, or the number if it has no axes.
@@ -115,7 +125,7 @@ struct Piece<'a, U> {
 
 /// Evaluates `work` for all points: it is given columns of coordinates, and the results for them: `widths[0]` numbers for
 /// each point in `values`, and `widths[1]` in `more` (which is empty for none). On all cores and without the interpreter's
-/// lock; Ctrl-C is noticed every quarter of a million points. Which thread does which chunk leaves no trace.
+/// lock; Ctrl-C ends it. Which thread does which chunk leaves no trace.
 ///
 /// (Another thread of the program may write to the points meanwhile, as with any function of NumPy that releases the lock;
 /// it gets values of the old points or the new ones.)
@@ -130,7 +140,7 @@ pub fn evaluate<T: Element + Copy + Default, U: Send, const D: usize>(
     let rows = Rows::<T, D>::new(points);
     let mut values = values.chunks_mut(CHUNK * widths[0]);
     let mut more = more.chunks_mut((CHUNK * widths[1]).max(1));
-    let mut pieces = (0..rows.point_count).step_by(CHUNK).map(|start| Piece {
+    let pieces = (0..rows.point_count).step_by(CHUNK).map(|start| Piece {
         points: start..rows.point_count.min(start + CHUNK),
         values: values.next().unwrap_or_default(),
         more: more.next().unwrap_or_default(),
@@ -143,14 +153,19 @@ pub fn evaluate<T: Element + Copy + Default, U: Send, const D: usize>(
         return Ok(());
     }
     let pool = work::pool()?;
-    loop {
-        let slab: Vec<Piece<'_, U>> = pieces.by_ref().take(SLAB / CHUNK).collect();
-        if slab.is_empty() {
-            return Ok(());
-        }
-        py.detach(|| pool.install(|| slab.into_par_iter().for_each_init(Room::default, evaluate)));
-        py.check_signals()?;
+    let pieces: Vec<Piece<'_, U>> = pieces.collect();
+    if rows.point_count <= SHORT {
+        py.detach(|| pool.install(|| pieces.into_par_iter().for_each_init(Room::default, evaluate)));
+        return py.check_signals();
     }
+    work::watched(py, |stopped| {
+        let evaluate = |room: &mut Room<T, D>, piece: Piece<'_, U>| {
+            if !stopped.load(Ordering::Relaxed) {
+                evaluate(room, piece);
+            }
+        };
+        pool.install(|| pieces.into_par_iter().for_each_init(Room::default, evaluate));
+    })
 }
 
 /// One thread's room for columns.

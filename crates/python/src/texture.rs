@@ -113,7 +113,7 @@ impl Texture {
     fn sample<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let material = self.material();
         let points = points_of(&material, points)?;
-        let colors = points::results::<f32>(points.py(), points.shape(), &[3]);
+        let colors = points::results::<f32>(points.py(), points.shape(), &[3])?;
         self.evaluate(&points, &colors, 3, |material, columns, colors| match *columns {
             [x, y] => material.colors([x, y], colors.as_chunks_mut().0),
             [x, y, z] => material.colors([x, y, z], colors.as_chunks_mut().0),
@@ -127,7 +127,7 @@ impl Texture {
     fn field<'py>(&self, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let material = self.material();
         let points = points_of(&material, points)?;
-        let values = points::results::<f32>(points.py(), points.shape(), &[]);
+        let values = points::results::<f32>(points.py(), points.shape(), &[])?;
         self.evaluate(&points, &values, 1, |material, columns, values| match *columns {
             [x, y] => material.evaluate([x, y], values),
             [x, y, z] => material.evaluate([x, y, z], values),

@@ -83,6 +83,37 @@ pub fn interruptible<T: Send + 'static>(
     }
 }
 
+/// Does work that borrows from the caller, in a thread of its own; meanwhile Python's signal handlers are called. What they
+/// raise ends the call as soon as the work has heeded `stopped`.
+pub fn watched(py: Python<'_>, work: impl FnOnce(&AtomicBool) + Send) -> PyResult<()> {
+    let stopped = AtomicBool::new(false);
+    thread::scope(|scope| {
+        let (sender, mut receiver) = channel();
+        let shared = &stopped;
+        let thread = thread::Builder::new().name("jaspe".to_owned()).spawn_scoped(scope, move || {
+            work(shared);
+            let _ = sender.send(());
+        });
+        let thread = thread.map_err(|error| PyRuntimeError::new_err(format!("cannot start a thread: {error}")))?;
+        loop {
+            match wait(py, &mut receiver, BEAT) {
+                Ok(()) => return py.check_signals(),
+                Err(RecvTimeoutError::Disconnected) => match thread.join() {
+                    Err(panic) => resume_unwind(panic),
+                    Ok(()) => return Ok(()),
+                },
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Err(raised) = py.check_signals() {
+                        stopped.store(true, Ordering::Relaxed);
+                        let _ = py.detach(|| thread.join());
+                        return Err(raised);
+                    }
+                }
+            }
+        }
+    })
+}
+
 /// Waits for a result without the interpreter's lock.
 fn wait<T: Send>(py: Python<'_>, receiver: &mut Receiver<T>, time: Duration) -> Result<T, RecvTimeoutError> {
     // (A receiver may be lent to another thread, but not shared with it.)
