@@ -7,6 +7,7 @@ mod arguments;
 mod command;
 mod failure;
 mod interrupt;
+mod keeper;
 mod material;
 mod measure;
 mod progress;
@@ -15,6 +16,8 @@ mod scene_file;
 mod show;
 mod stats;
 mod terminal;
+mod viewer;
+mod watch;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use jaspe_render::Observer;
 
-use crate::interrupt;
+use crate::{interrupt, report};
 
 /// When progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -21,7 +21,7 @@ pub enum When {
     Off,
 }
 
-/// Shows a rendering's progress, and stops it after Ctrl-C.
+/// Shows the progress of a work, and stops it after Ctrl-C.
 #[derive(Debug)]
 pub enum Progress {
     /// Says nothing.
@@ -51,6 +51,14 @@ impl Progress {
     pub fn finish(&self) {
         if let Progress::Bar(bar) = self {
             bar.finish_and_clear();
+        }
+    }
+
+    /// Prints a warning, above the bar if there is one.
+    pub fn warn(&self, message: &str) {
+        match self {
+            Progress::Bar(bar) => bar.suspend(|| report::print_warning(message)),
+            Progress::Lines { .. } | Progress::Silent => report::print_warning(message),
         }
     }
 }

@@ -8,12 +8,17 @@ use serde_json::{Value, json};
 
 /// Prints what ended a command.
 pub fn print_failure(message: &str, hints: &[String]) {
-    let line =
-        |level: Level<'_>, text: &str| Renderer::styled().render(&[Group::with_title(level.primary_title(text))]);
-    anstream::eprintln!("{}", line(Level::ERROR, message));
-    for hint in hints {
-        anstream::eprintln!("{}", line(Level::HELP, hint));
-    }
+    print_line(Level::ERROR, message);
+    hints.iter().for_each(|hint| print_line(Level::HELP, hint));
+}
+
+/// Prints what went wrong without ending anything.
+pub fn print_warning(message: &str) {
+    print_line(Level::WARNING, message);
+}
+
+fn print_line(level: Level<'_>, text: &str) {
+    anstream::eprintln!("{}", Renderer::styled().render(&[Group::with_title(level.primary_title(text))]));
 }
 
 /// All diagnostics of at least that severity, with excerpts. Styled: print it through `anstream`, which knows what the

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use jaspe_render::{CompileOptions, CompiledScene, compile};
-use jaspe_scene::{Diagnostics, DiskLoader, Severity, Sources};
+use jaspe_scene::{Diagnostics, Loader, Severity, Sources};
 
 use crate::failure::Failure;
 use crate::report;
@@ -25,8 +25,13 @@ pub struct Loaded {
     pub build_time: Duration,
 }
 
-/// Reads and compiles a scene.
-pub fn load(path: &Path, assignments: &[String], options: &CompileOptions) -> Result<Loaded, Failure> {
+/// Reads and compiles a scene, with all its files by this loader.
+pub fn load(
+    path: &Path,
+    assignments: &[String],
+    options: &CompileOptions,
+    loader: &dyn Loader,
+) -> Result<Loaded, Failure> {
     // That the file cannot be read at all is not the scene's fault.
     let metadata = File::open(path).and_then(|file| file.metadata()).map_err(|error| Failure::reading(path, &error))?;
     if metadata.is_dir() {
@@ -34,7 +39,7 @@ pub fn load(path: &Path, assignments: &[String], options: &CompileOptions) -> Re
     }
 
     let started = Instant::now();
-    let (mut scene, mut diagnostics) = jaspe_scene::read(path, &DiskLoader);
+    let (mut scene, mut diagnostics) = jaspe_scene::read(path, loader);
     // A scene with errors may lack the very shaders that are to change.
     if !diagnostics.has_errors() {
         for assignment in assignments {
@@ -47,7 +52,7 @@ pub fn load(path: &Path, assignments: &[String], options: &CompileOptions) -> Re
     let parse_time = started.elapsed();
 
     let started = Instant::now();
-    let compilation = compile(&scene, &DiskLoader, options);
+    let compilation = compile(&scene, loader, options);
     diagnostics.extend(compilation.diagnostics);
     let scene_without_errors = if diagnostics.has_errors() { None } else { compilation.scene };
     Ok(Loaded {

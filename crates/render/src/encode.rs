@@ -10,8 +10,7 @@ use image::codecs::{bmp, hdr, jpeg, png, tiff};
 use image::{ExtendedColorType, ImageEncoder};
 
 use crate::develop::{Alpha, Depth, Image, Samples, develop, is_transparent};
-use crate::film::{Encoding, Film, Pixel};
-use jaspe_scene::srgb_decode;
+use crate::film::{Film, Pixel};
 
 /// A kind of picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -156,7 +155,7 @@ fn write(encoder: impl ImageEncoder, image: &Image) -> Result<(), String> {
 
 fn write_hdr(bytes: &mut Vec<u8>, film: &Film) -> Result<(), String> {
     let light = |pixel: &Pixel| {
-        let [red, green, blue, _] = linear(film.encoding, pixel);
+        let [red, green, blue, _] = film.linear(pixel);
         image::Rgb([red.max(0.0), green.max(0.0), blue.max(0.0)])
     };
     let pixels: Vec<_> = film.pixels.iter().map(light).collect();
@@ -171,7 +170,7 @@ fn write_exr(bytes: &mut Vec<u8>, film: &Film) -> Result<(), String> {
         blocks: openexr::Blocks::ScanLines,
         line_order: openexr::LineOrder::Increasing,
     };
-    let at = |place: openexr::Vec2<usize>| linear(film.encoding, &film.pixels[place.y() * size.0 + place.x()]);
+    let at = |place: openexr::Vec2<usize>| film.linear(&film.pixels[place.y() * size.0 + place.x()]);
     let out = Cursor::new(bytes);
     let attributes = || openexr::LayerAttributes::default();
     if is_transparent(film) {
@@ -192,22 +191,12 @@ fn write_exr(bytes: &mut Vec<u8>, film: &Film) -> Result<(), String> {
     .map_err(|error| error.to_string())
 }
 
-/// A pixel as linear light, whatever the film holds.
-fn linear(encoding: Encoding, pixel: &Pixel) -> Pixel {
-    match encoding {
-        Encoding::Linear => *pixel,
-        Encoding::Display => {
-            let [red, green, blue, alpha] = *pixel;
-            let decode = |v: f32| srgb_decode(f64::from(v)) as f32;
-            [decode(red), decode(green), decode(blue), alpha]
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::Encoding;
     use crate::picture::{Picture, PicturePixels};
+    use jaspe_scene::srgb_decode;
 
     /// A gradient with colours that an 8-bit display holds exactly, and one uncovered pixel if asked for.
     fn film(alpha: f32) -> Film {

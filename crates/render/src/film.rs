@@ -1,5 +1,7 @@
 //! The film: what rendering leaves behind. No display curve has been applied yet.
 
+use jaspe_scene::srgb_decode;
+
 /// How the numbers of a [`Film`] relate to light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Encoding {
@@ -30,5 +32,17 @@ impl Film {
     /// A black, empty film.
     pub fn new(width: u32, height: u32, encoding: Encoding) -> Self {
         Film { width, height, pixels: vec![[0.0; 4]; width as usize * height as usize], encoding }
+    }
+
+    /// A pixel of this film as linear light, whatever it holds.
+    pub fn linear(&self, pixel: &Pixel) -> Pixel {
+        match self.encoding {
+            Encoding::Linear => *pixel,
+            Encoding::Display => {
+                let [red, green, blue, alpha] = *pixel;
+                let decode = |v: f32| srgb_decode(f64::from(v)) as f32;
+                [decode(red), decode(green), decode(blue), alpha]
+            }
+        }
     }
 }

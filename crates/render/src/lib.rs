@@ -35,6 +35,7 @@
 
 mod affine;
 mod camera;
+mod checkpoint;
 mod clock;
 mod compile;
 mod develop;
@@ -51,6 +52,7 @@ mod mesh_file;
 mod modifier;
 mod motion;
 mod options;
+mod passes;
 mod picture;
 mod report;
 mod sampler;
@@ -59,6 +61,7 @@ mod swatch;
 mod tile;
 mod wave;
 
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use clock::Spent;
 pub use compile::{Compilation, CompiledScene, compile};
 pub use develop::{Alpha, Depth, Image, Samples, develop};
@@ -67,7 +70,7 @@ pub use film::{Encoding, Film, Pixel};
 pub use flip::flip;
 pub use jaspe_scene::{srgb_decode, srgb_encode};
 pub use mesh_file::{MeshFile, read_mesh};
-pub use options::{Cancelled, CompileOptions, Look, Observer, RenderOptions, Stats};
+pub use options::{Cancelled, CompileOptions, Look, Observer, RenderOptions, ResumeError, Stats};
 pub use picture::{DecodeError, Picture, PicturePixels};
 pub use swatch::swatch;
 
@@ -82,5 +85,24 @@ pub fn render(
     options: &RenderOptions,
     observer: &dyn Observer,
 ) -> Result<(Film, Stats), Cancelled> {
-    tile::render(scene, options, observer)
+    passes::render(scene, options, None, observer).map_err(|error| match error {
+        ResumeError::Cancelled => Cancelled,
+        ResumeError::Unfit => unreachable!("there is no checkpoint"),
+    })
+}
+
+/// Goes on with a rendering from a [`Checkpoint`] that [`Observer::checkpoint`] has kept of it. The picture has the same bits
+/// as one that was never interrupted, whatever the numbers of threads.
+///
+/// That scene and options are the same is for the caller to make sure: see [`Checkpoint::to_bytes`].
+///
+/// # Errors
+/// [`ResumeError`] when the observer asked for it, or when the checkpoint cannot be of this rendering.
+pub fn resume(
+    scene: &CompiledScene,
+    options: &RenderOptions,
+    checkpoint: &Checkpoint,
+    observer: &dyn Observer,
+) -> Result<(Film, Stats), ResumeError> {
+    passes::render(scene, options, Some(checkpoint), observer)
 }

@@ -2,7 +2,9 @@
 
 use jaspe_scene::Dialect;
 
+use crate::checkpoint::Checkpoint;
 use crate::clock::Spent;
+use crate::film::Film;
 
 /// Choices that are made when a scene is compiled.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -73,9 +75,26 @@ pub trait Observer: Sync {
         let _ = (done, total);
     }
 
-    /// Asked between tiles; true stops the rendering.
+    /// Asked between waves; true stops the rendering.
     fn cancelled(&self) -> bool {
         false
+    }
+
+    /// A part of the picture is done, or a better version of it: its top left corner in pixels of the part of the
+    /// picture that was asked for, and its colours before the reconstruction filter.
+    fn tile(&self, corner: [u32; 2], part: &Film) {
+        let _ = (corner, part);
+    }
+
+    /// Asked between waves; true pauses the rendering and gives its state to [`Observer::checkpoint`], also when it is
+    /// cancelled at the same time.
+    fn wants_checkpoint(&self) -> bool {
+        false
+    }
+
+    /// The state from which [`crate::resume`] goes on.
+    fn checkpoint(&self, state: Checkpoint) {
+        let _ = state;
     }
 }
 
@@ -94,7 +113,33 @@ impl std::fmt::Display for Cancelled {
 
 impl std::error::Error for Cancelled {}
 
-/// What a rendering did.
+/// Why a rendering did not go on from a checkpoint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ResumeError {
+    /// It was stopped by its [`Observer`].
+    Cancelled,
+    /// The checkpoint is of a rendering with another size, crop, seed or number of samples.
+    Unfit,
+}
+
+impl From<Cancelled> for ResumeError {
+    fn from(Cancelled: Cancelled) -> Self {
+        ResumeError::Cancelled
+    }
+}
+
+impl std::fmt::Display for ResumeError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            ResumeError::Cancelled => Cancelled.fmt(f),
+            ResumeError::Unfit => f.write_str("the checkpoint does not fit the rendering"),
+        }
+    }
+}
+
+impl std::error::Error for ResumeError {}
+
+/// What a rendering did: the part of it after the checkpoint, if it went on from one.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Stats {
     /// Camera samples traced.

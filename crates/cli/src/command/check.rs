@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use jaspe_edge::message;
 use jaspe_render::CompileOptions;
-use jaspe_scene::{Dialect, Severity};
+use jaspe_scene::{Dialect, DiskLoader, Severity};
 use serde_json::json;
 
 use crate::Outcome;
@@ -45,7 +45,7 @@ impl Check {
     /// Checks and prints.
     pub fn run(self) -> Result<Outcome, Failure> {
         let options = CompileOptions { dialect: self.dialect, ..CompileOptions::default() };
-        let loaded = scene_file::load(&self.scene, &self.set, &options)?;
+        let loaded = scene_file::load(&self.scene, &self.set, &options, &DiskLoader)?;
         let (diagnostics, sources) = (&loaded.diagnostics, &loaded.sources);
         match self.format {
             OutputFormat::Text => {

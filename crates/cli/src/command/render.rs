@@ -2,27 +2,31 @@
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
 use jaspe_edge::file::Output;
 use jaspe_edge::message;
-use jaspe_render::{CompileOptions, CompiledScene, Film, Look, RenderOptions, Stats, render};
-use jaspe_scene::{Dialect, Severity};
+use jaspe_render::{CompileOptions, CompiledScene, Film, Look, RenderOptions, ResumeError, Stats, render, resume};
+use jaspe_scene::{Dialect, DiskLoader, Loader, Severity};
 
 use crate::Outcome;
 use crate::arguments::{crop, dialect, look, size};
 use crate::failure::Failure;
+use crate::keeper::{self, Keeper, Recorder};
 use crate::progress::{Progress, When};
 use crate::scene_file::{self, Loaded};
 use crate::show::{duration, json_text, size as file_size};
 use crate::stats::{Rays, Report, Times, peak_rss_bytes};
+use crate::viewer::{self, Viewer};
+use crate::watch::Watch;
 use crate::{interrupt, report, terminal};
 
 /// Render a scene to a picture file.
 ///
 /// The extension of the output chooses its format: .png (8 or 16 bits), .jpg, .tiff and .bmp are encoded for display,
-/// .exr and .hdr hold linear light. The file appears whole or not at all. Ctrl-C stops and leaves nothing behind.
+/// .exr and .hdr hold linear light. The file appears whole or not at all. Ctrl-C stops and leaves nothing behind but
+/// the state that --checkpoint asks for.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
@@ -32,6 +36,9 @@ Examples:
   jaspe render scene.sc --override normals               what the surfaces look like
   jaspe render scene.sc --set floor.depth=3 --set floor.scale=2.5
   jaspe render old.sc --dialect report --resolution 640x480 --aa 0 0
+  jaspe render scene.sc --checkpoint night.state         may be stopped at any time …
+  jaspe render scene.sc --resume night.state             … and goes on to the same picture
+  jaspe render scene.sc --tev                            watch it in tev, on this machine
   jaspe render scene.sc --quiet --stats json | jq .render_s")]
 pub struct Render {
     /// The scene
@@ -99,6 +106,24 @@ pub struct Render {
     #[arg(long)]
     show: bool,
 
+    /// Send the picture to the viewer tev while it is rendered, at 127.0.0.1:14158 unless told otherwise
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, default_missing_value = viewer::DEFAULT,
+        value_parser = viewer::address)]
+    tev: Option<String>,
+
+    /// Keep the state of the rendering in this file now and then and at Ctrl-C; it is removed when the picture is written
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+
+    /// Seconds between two states of --checkpoint
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = seconds)]
+    checkpoint_every: f64,
+
+    /// Go on from the state in this file, to the same bits, with the same scene and options (threads may differ); further
+    /// states go there too, unless --checkpoint names another file. Times and counts are of what is left
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
+
     /// Bits per sample of a PNG or TIFF [default: 8]
     #[arg(long, value_name = "8|16", value_parser = bits)]
     bits: Option<u8>,
@@ -109,6 +134,13 @@ pub struct Render {
 enum StatsFormat {
     /// One JSON object
     Json,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|seconds| (0.1..=1e6).contains(seconds))
+        .ok_or("expected 0.1 to 1000000 seconds".to_owned())
 }
 
 fn bits(text: &str) -> Result<u8, String> {
@@ -125,9 +157,12 @@ impl Render {
         let started = Instant::now();
         let path = self.output.clone().unwrap_or_else(|| default_output(&self.scene));
         let output = Output::new(&path, self.bits)?;
+        let keeper = self.keeper()?;
         interrupt::listen();
 
-        let loaded = scene_file::load(&self.scene, &self.set, &self.compile_options())?;
+        let recorder = keeper.is_some().then(Recorder::default);
+        let loader = recorder.as_ref().map_or(&DiskLoader as &dyn Loader, |recorder| recorder);
+        let loaded = scene_file::load(&self.scene, &self.set, &self.compile_options(), loader)?;
         self.print_diagnostics(&loaded);
         let Some(scene) = &loaded.scene else {
             eprintln!("{}: {}; nothing was rendered", self.scene.display(), message::summary(&loaded.diagnostics));
@@ -135,8 +170,10 @@ impl Render {
         };
         self.check_crop(scene)?;
 
+        let origin = recorder.map(|recorder| recorder.origin(&self.marks())).unwrap_or_default();
+        let watch = self.watch(scene, output.path(), keeper.map(|keeper| (keeper, origin)));
         let rendering = Instant::now();
-        let (film, stats) = self.render(scene)?;
+        let (film, stats) = self.render(scene, &watch)?;
         let render_time = rendering.elapsed();
         if interrupt::asked() {
             return Err(Failure::Interrupted);
@@ -152,6 +189,7 @@ impl Render {
             total: started.elapsed(),
         };
 
+        self.finish(watch, &film);
         if self.show {
             terminal::show(&film);
         }
@@ -198,16 +236,80 @@ impl Render {
         }
     }
 
-    fn render(&self, scene: &CompiledScene) -> Result<(Film, Stats), Failure> {
+    /// Where the state of the rendering is kept, if anywhere.
+    fn keeper(&self) -> Result<Option<Keeper>, Failure> {
+        let resumed = self.resume.as_deref();
+        resumed.map(keeper::look_for).transpose()?;
+        let path = self.checkpoint.as_deref().or(resumed);
+        path.map(|path| Keeper::new(path, resumed, Duration::from_secs_f64(self.checkpoint_every))).transpose()
+    }
+
+    /// The options that change the picture, each as it is written.
+    fn marks(&self) -> Vec<String> {
+        let list = |numbers: &[u32]| numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
+        let [low, high] = self.aa.as_deref().and_then(|aa| aa.try_into().ok()).unwrap_or([0, 0]);
+        [
+            self.resolution.map(|[width, height]| format!("--resolution {width}x{height}")),
+            self.samples.map(|samples| format!("--samples {samples}")),
+            self.aa.as_ref().map(|_| format!("--aa {low} {high}")),
+            (self.seed != 0).then(|| format!("--seed {}", self.seed)),
+            self.crop.map(|crop| format!("--crop {}", list(&crop))),
+            self.dialect.map(|dialect| format!("--dialect {}", dialect.name())),
+            self.look.map(|look| format!("--override {}", look.name())),
+        ]
+        .into_iter()
+        .flatten()
+        .chain(self.set.iter().map(|assignment| format!("--set {assignment}")))
+        .collect()
+    }
+
+    /// All that follows the rendering.
+    fn watch(&self, scene: &CompiledScene, name: &Path, keeper: Option<(Keeper, String)>) -> Watch {
+        let progress = Progress::new("rendering", if self.quiet { When::Off } else { self.progress });
+        let mut watch = Watch { progress, keeper, viewer: None, quiet: self.quiet };
+        if let Some(address) = &self.tev {
+            let size = self.crop.map_or(scene.resolution(), |[x0, y0, x1, y1]| [x1 - x0, y1 - y0]);
+            match Viewer::open(address, &name.to_string_lossy(), size) {
+                Ok(viewer) => watch.viewer = Some(viewer),
+                Err(warning) => watch.warn(Some(warning)),
+            }
+        }
+        watch
+    }
+
+    fn render(&self, scene: &CompiledScene, watch: &Watch) -> Result<(Film, Stats), Failure> {
         let options =
             RenderOptions { threads: self.threads.map(|threads| threads as usize), seed: self.seed, crop: self.crop };
-        let progress = Progress::new("rendering", if self.quiet { When::Off } else { self.progress });
-        let result = render(scene, &options, &progress);
-        progress.finish();
-        result.map_err(|_| {
-            eprintln!("stopped; nothing was written");
-            Failure::Interrupted
+        let result = match (&self.resume, &watch.keeper) {
+            (Some(path), Some((_, origin))) => {
+                let [width, height] = scene.resolution().map(u64::from);
+                let state = keeper::read(path, origin, width * height)?;
+                resume(scene, &options, &state, watch)
+            }
+            _ => render(scene, &options, watch).map_err(Into::into),
+        };
+        watch.progress.finish();
+        result.map_err(|error| match (error, &self.resume, &watch.keeper) {
+            (ResumeError::Unfit, Some(path), _) => keeper::unusable(path, "does not fit the rendering"),
+            (_, _, Some((keeper, _))) if keeper.has_kept() => {
+                eprintln!("stopped; go on with --resume {}", keeper.path().display());
+                Failure::Interrupted
+            }
+            _ => {
+                eprintln!("stopped; nothing was written");
+                Failure::Interrupted
+            }
         })
+    }
+
+    /// Shows the finished picture to the viewer, and removes what it no longer needs.
+    fn finish(&self, mut watch: Watch, film: &Film) {
+        if let Some((keeper, _)) = &watch.keeper {
+            let warning = |why| format!("cannot remove the checkpoint `{}`: {why}", keeper.path().display());
+            watch.warn(keeper.remove().map(warning));
+        }
+        let viewer = watch.viewer.take();
+        watch.warn(viewer.and_then(|viewer| viewer.finish(film)));
     }
 
     fn report(&self, film: &Film, stats: &Stats, times: &Times, warnings: usize) -> Report {
