@@ -114,7 +114,7 @@ impl Sunflow {
             for lit in lit {
                 let point = &lit.point;
                 let beams = &beams[usize::from(point.path.depth.diffuse > 0)];
-                let share = (point.share.max(1) as usize).min(beams.len().max(1));
+                let share = (point.of.max(1) as usize).min(beams.len().max(1));
                 if number < beams.len() && number % share == point.key.index as usize % share {
                     let beam = beams[number];
                     lit.ask(Arrival { irradiance: beam.irradiance * share as f32, ..beam }, &mut room.shadows);

@@ -19,8 +19,10 @@ pub(super) struct Point<'a> {
     /// Of the ray that arrived.
     pub direction: Vec3,
     pub key: SampleKey,
-    /// How many samples of the pixel share the work: each takes so many rays less.
+    /// By how much fewer rays of its own each sample of the pixel takes, so that several are not much dearer than one.
     pub share: u32,
+    /// How many samples the pixel has: among them lights that all points have in common are divided.
+    pub of: u32,
     pub hit: Hit,
     pub surface: Surface,
     /// The ray came from the inside of the shape.
@@ -162,6 +164,7 @@ impl Points {
             direction: batch.rays.direction.get(member),
             key: SampleKey { pixel, index: path.index },
             share: batch.of.isqrt(),
+            of: batch.of,
             hit: batch.hits.get(member),
             surface: self.surfaces.get(i),
             inside: self.inside[i],

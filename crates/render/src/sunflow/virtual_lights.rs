@@ -40,7 +40,7 @@ impl VirtualLights {
         for (set, lights) in self.sets.iter().enumerate() {
             for (number, light) in lights.iter().enumerate() {
                 for (lit, _) in lit.iter().zip(&sets).filter(|&(_, &of)| of == set) {
-                    let share = (lit.point.share.max(1) as usize).min(lights.len());
+                    let share = (lit.point.of.max(1) as usize).min(lights.len());
                     if number % share == lit.point.key.index as usize % share {
                         self.add(light, lit, share as f32, &mut room.shadows);
                     }

@@ -181,7 +181,7 @@ impl Real for F32x8 {
 }
 
 /// The sum of an edge's two components at the offset from a corner, by their choices in the low four bits of `code`: see
-/// [`crate::table::choice_code`]. The offset has the lengths `y` (sign clear) and, negative, `x` and `z`, of which `x_or_y` and
+/// `choice_code` in `table.rs`. The offset has the lengths `y` (sign clear) and, negative, `x` and `z`, of which `x_or_y` and
 /// `z_or_y` hold the differing bits. (A bit for the sign: where x is negative and y is not, it says which sign is taken.)
 #[inline]
 #[target_feature(enable = "avx2")]
