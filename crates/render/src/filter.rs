@@ -6,6 +6,7 @@
 //! a pixel what the filter does. Neighbours share their noise so, and a wide filter makes pictures as calm as it promises.
 
 use jaspe_scene::description::Filter;
+use rayon::prelude::*;
 
 use crate::film::{Film, Pixel};
 use crate::math;
@@ -13,6 +14,9 @@ use crate::math;
 /// Weights of a pixel, of those next to it and of those next but one, in a row or column; together 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Taps([f32; 3]);
+
+/// Rows that one thread filters at a time.
+const BAND: usize = 64;
 
 impl Taps {
     /// Every pixel for itself.
@@ -56,22 +60,49 @@ impl Taps {
         if far != 0.0 { 2 } else { u32::from(near != 0.0) }
     }
 
-    /// Filters a picture in place. At its borders only what is inside counts.
+    /// Filters a picture in place, band by band on all threads. At its borders only what is inside counts.
     pub fn apply(self, film: &mut Film) {
         let reach = self.reach() as usize;
         if reach == 0 {
             return;
         }
         let (width, height) = (film.width as usize, film.height as usize);
+        // What a band takes from those above and below it, before they change.
+        let rows = |from: usize, to: usize| film.pixels[from * width..to * width].to_vec();
+        let around = |y0: usize| {
+            let y1 = (y0 + BAND).min(height);
+            [rows(y0.saturating_sub(reach), y0), rows(y1, (y1 + reach).min(height))]
+        };
+        let halos: Vec<[Vec<Pixel>; 2]> = (0..height).step_by(BAND).map(around).collect();
+        let bands = film.pixels.par_chunks_mut(BAND * width).zip(&halos).enumerate();
+        bands.for_each(|(i, (band, halo))| self.apply_to_band(band, halo, i * BAND, [width, height]));
+    }
+
+    /// Filters the rows from `y0` on; those above and below are given.
+    fn apply_to_band(
+        self,
+        band: &mut [Pixel],
+        [above, below]: &[Vec<Pixel>; 2],
+        y0: usize,
+        [width, height]: [usize; 2],
+    ) {
+        let y1 = y0 + band.len() / width;
+        let (first, end) = (y0 - above.len() / width, y1 + below.len() / width);
+        let reach = self.reach() as usize;
         // Rows that are filtered along themselves and wait for those below.
         let mut rows: [Vec<Pixel>; 5] = std::array::from_fn(|_| vec![[0.0; 4]; width]);
-        for next in 0..height + reach {
-            if next < height {
-                let row = &film.pixels[next * width..][..width];
+        for next in first..end + reach {
+            if next < end {
+                let (from, start) = match next {
+                    _ if next < y0 => (&above[..], first),
+                    _ if next < y1 => (&*band, y0),
+                    _ => (&below[..], y1),
+                };
+                let row = &from[(next - start) * width..][..width];
                 rows[next % 5].iter_mut().enumerate().for_each(|(x, out)| *out = self.weigh(x, width, |at| row[at]));
             }
-            if let Some(y) = next.checked_sub(reach) {
-                let row = &mut film.pixels[y * width..][..width];
+            if let Some(y) = next.checked_sub(reach).filter(|y| (y0..y1).contains(y)) {
+                let row = &mut band[(y - y0) * width..][..width];
                 row.iter_mut().enumerate().for_each(|(x, out)| *out = self.weigh(y, height, |at| rows[at % 5][x]));
             }
         }
@@ -197,6 +228,30 @@ mod tests {
         assert!((own - 2.0 / 3.0).abs() < 1e-6 && (near - 1.0 / 6.0).abs() < 1e-6 && far == 0.0);
         let Taps([own, near, far]) = Taps::over_points(Filter::Gaussian);
         assert!((near / own - 1.0 / std::f32::consts::E).abs() < 1e-3 && far == 0.0);
+    }
+
+    #[test]
+    fn bands_leave_no_seams() {
+        for (kind, height) in
+            ALL.into_iter().flat_map(|kind| [1, BAND, BAND + 1, 3 * BAND - 1].map(|rows| (kind, rows)))
+        {
+            let (taps, width) = (Taps::over_areas(kind), 7);
+            let mut film = Film::new(width as u32, height as u32, Encoding::Linear);
+            for (i, pixel) in film.pixels.iter_mut().enumerate() {
+                *pixel = [1, 3, 5, 7].map(|k| ((i * i * k + 11 * i) % 97) as f32);
+            }
+            let old = film.pixels.clone();
+            taps.apply(&mut film);
+            if taps.reach() == 0 {
+                assert_eq!(film.pixels, old);
+                continue;
+            }
+            let along = |x: usize, y: usize| taps.weigh(x, width, |at| old[y * width + at]);
+            for (i, pixel) in film.pixels.iter().enumerate() {
+                let (x, y) = (i % width, i / width);
+                assert_eq!(*pixel, taps.weigh(y, height, |at| along(x, at)), "{kind:?} at {x}, {y} of {height}");
+            }
+        }
     }
 
     #[test]
