@@ -9,10 +9,12 @@ import sys
 from pathlib import Path
 from typing import Any, Callable
 
-import jaspe
-from jaspe import _jaspe, noise
-
 FOLDER = Path(__file__).parent / "jaspe"
+# The package that is installed is meant, and not the sources beside this file, which hold no library.
+sys.path = [path for path in sys.path if Path(path).resolve() != FOLDER.parent.resolve()]
+
+import jaspe  # noqa: E402
+from jaspe import _jaspe, noise  # noqa: E402
 
 #: The type of each parameter of the noises.
 TYPES = {
