@@ -12,6 +12,7 @@ use jaspe_scene::{MemoryLoader, parse};
 use crate::bake::{Arrays, Bake, Settings};
 use crate::map::{Map, NormalConvention};
 use crate::model::Model;
+use crate::surface::sheet;
 
 /// The longest side of the maps that a preview wears.
 const MAPS: u32 = 1024;
@@ -163,31 +164,12 @@ fn cloth() -> Model {
         let y = 0.7 + depth * sin(17.0 * u + sway * 6.0 + 0.7 * sin(5.0 * u)) + 0.04 * sin(41.0 * u + 3.0 * v);
         DVec3::new(-0.15 + 3.1 * u + sway * 0.4, y, 0.02 + 2.65 * v)
     };
-    let mut cloth = Model::default();
-    let [columns, rows] = [160u32, 60];
-    for j in 0..=rows {
-        for i in 0..=columns {
-            let (u, v) = (f64::from(i) / f64::from(columns), f64::from(j) / f64::from(rows));
-            let step = 1e-4;
-            let (by_u, by_v) = (folds(u + step, v) - folds(u - step, v), folds(u, v + step) - folds(u, v - step));
-            let normal = by_u.cross(by_v).normalize();
-            // As much cloth as the folds take, at the ball's scale.
-            let uv = [2.1 * u, 1.27 * v];
-            cloth.vertices.push(crate::model::Vertex {
-                point: folds(u, v).to_array(),
-                normal: normal.to_array(),
-                tangent: by_u.normalize().to_array(),
-                hand: 1.0,
-                uv,
-            });
-        }
-    }
-    for j in 0..rows {
-        for i in 0..columns {
-            let corner = |i: u32, j: u32| j * (columns + 1) + i;
-            let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
-            cloth.triangles.extend([[a, b, c], [a, c, d]]);
-        }
-    }
+    let mut cloth = sheet([160, 60], &|u, v| {
+        let step = 1e-4;
+        let (by_u, by_v) = (folds(u + step, v) - folds(u - step, v), folds(u, v + step) - folds(u, v - step));
+        (folds(u, v), by_u.cross(by_v).normalize(), by_u.normalize())
+    });
+    // As much cloth as the folds take, at the ball's scale.
+    cloth.vertices.iter_mut().for_each(|vertex| vertex.uv = [2.1 * vertex.uv[0], 1.27 * vertex.uv[1]]);
     cloth
 }

@@ -188,7 +188,7 @@ fn around(u: f64, v: f64) -> (DVec3, DVec3, DVec3, f64) {
 }
 
 /// A grid over u and v, from the point, the normal and the direction along u at each of its knots.
-fn sheet([columns, rows]: [u32; 2], at: &dyn Fn(f64, f64) -> (DVec3, DVec3, DVec3)) -> Model {
+pub(crate) fn sheet([columns, rows]: [u32; 2], at: &dyn Fn(f64, f64) -> (DVec3, DVec3, DVec3)) -> Model {
     let mut model = Model::default();
     for j in 0..=rows {
         for i in 0..=columns {

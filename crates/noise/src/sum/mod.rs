@@ -332,7 +332,6 @@ impl Sum {
         footprints: &[f32],
         values: &mut [f32],
     ) {
-        assert_eq!(footprints.len(), values.len(), "all slices have the same length");
         self.fill_by_octaves(level, &points, Some((footprints, Judge::Parts)), values, &mut []);
     }
 
@@ -355,7 +354,6 @@ impl Sum {
         footprints: &[f32],
         values: &mut [f32],
     ) {
-        assert_eq!(footprints.len(), values.len(), "all slices have the same length");
         self.fill_by_octaves(level, &points, Some((footprints, Judge::Point)), values, &mut []);
     }
 

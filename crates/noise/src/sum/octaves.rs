@@ -24,6 +24,7 @@ impl Sum {
     ) {
         simd::assert_lengths(points, values.len());
         simd::assert_lengths(gradient, values.len());
+        simd::assert_lengths(footprints.as_ref().map(|(sides, _)| sides).as_slice(), values.len());
         match (points.len(), gradient.is_empty()) {
             (1, true) => self.chunks::<1, false>(level, points, footprints, values, gradient),
             (2, true) => self.chunks::<2, false>(level, points, footprints, values, gradient),
@@ -46,6 +47,7 @@ impl Sum {
     ) {
         let fade = Fade::of(self.noise.basis(), self.combine.folds(), D);
         let mut buffers = Buffers::<D> { scaled: [[0.0; CHUNK]; D], noise: [0.0; CHUNK], slopes: [[0.0; CHUNK]; D] };
+        let mut sides = [0.0; CHUNK];
         for start in (0..values.len()).step_by(CHUNK) {
             let at = start..values.len().min(start + CHUNK);
             let mut partials = [Partial::<f32, D>::new(); CHUNK];
@@ -56,9 +58,10 @@ impl Sum {
                         *scaled = coordinate * frequency as f32;
                     }
                 }
-                let mut sides = [0.0; CHUNK];
-                for (side, footprint) in sides.iter_mut().zip(footprints.map_or(&[][..], |(all, _)| &all[at.clone()])) {
-                    *side = footprint * frequency as f32;
+                if let Some((footprints, _)) = footprints {
+                    for (side, footprint) in sides.iter_mut().zip(&footprints[at.clone()]) {
+                        *side = footprint * frequency as f32;
+                    }
                 }
                 let octave = Octave { noise: &self.noise, frequency };
                 let scaled = buffers.scaled.each_ref().map(|axis| &axis[..at.len()]);

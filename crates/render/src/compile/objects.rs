@@ -125,10 +125,16 @@ impl Compiler<'_, '_> {
             Written::Sphere { center, radius } => affine::ball(*center, *radius),
             _ => DMat4::IDENTITY,
         };
+        let mut motion = None;
         let matrix = match (transform, self.dialect) {
             (None, _) => base,
             (Some(transform), Dialect::Report) => report_matrix(&transform.kind, geometry, base),
-            (Some(transform), Dialect::Sunflow) => Motion::new(&transform.kind).at(self.shutter.middle()) * base,
+            (Some(transform), Dialect::Sunflow) => {
+                let course = Motion::new(&transform.kind);
+                let matrix = course.at(self.shutter.middle()) * base;
+                motion = Some((course, transform.span));
+                matrix
+            }
         };
         let place = Placement::new(matrix, materials);
         if place.is_none() {
@@ -138,9 +144,7 @@ impl Compiler<'_, '_> {
                     .hint("scales and radii must not be zero"),
             );
         }
-        let motion = transform.filter(|_| self.dialect == Dialect::Sunflow && self.shutter.has_duration());
-        let motion = motion.map(|transform| (Motion::new(&transform.kind), transform.span));
-        match motion.filter(|(motion, _)| !motion.is_still()) {
+        match motion.filter(|(motion, _)| self.shutter.has_duration() && !motion.is_still()) {
             Some((_, span)) if matches!(geometry, Written::Plane(_)) => {
                 let message = "a moving plane is not blurred: it stands as in the middle of the exposure";
                 let hint = "a mesh of two triangles is";
