@@ -174,3 +174,25 @@ fn convert_writes_the_same_scene_with_or_without_its_includes() {
     assert!(!here.path().join("out/bad.sc").exists());
     assert_eq!(run_in(here.path(), &["convert", "missing.sc"]).status, 2);
 }
+
+#[test]
+fn rays_are_timed_with_and_without_a_peer() {
+    let here = folder();
+    let obj = "v -1 0 -1\nv 1 0 -1\nv 0 0 1\nv 0 1 0\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    std::fs::write(here.path().join("four.obj"), obj).expect("written");
+    let run = run_in(here.path(), &["bench", "rays", "four.obj", "--runs", "1"]);
+    assert_eq!(run.status, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("four.obj, 4 triangles"), "{}", run.stdout);
+    for row in ["camera", "bounce", "shuffled", "ambient occlusion", "shadow", "build, ms", "memory, MB"] {
+        let line = run.stdout.lines().find_map(|line| line.strip_prefix(row)).expect(row);
+        let figure = line.split_whitespace().next().and_then(|figure| figure.parse::<f64>().ok());
+        assert!(figure.is_some_and(|figure| figure >= 0.0), "{row}: {line}");
+    }
+    assert!(run.stderr.contains("--embree") || run.stdout.contains("Embree"), "{}", run.stderr);
+
+    let run = run_in(here.path(), &["bench", "rays", "--embree", "four.obj"]);
+    assert!(run.status == 2 && run.stderr.contains("libembree4.so"), "{}", run.stderr);
+    std::fs::write(here.path().join("none.obj"), "v 0 0 0\n").expect("written");
+    let run = run_in(here.path(), &["bench", "rays", "none.obj"]);
+    assert!(run.status == 2 && run.stderr.contains("no triangles"), "{}", run.stderr);
+}

@@ -17,6 +17,7 @@ use crate::environment::Environment;
 use crate::filter::Taps;
 use crate::geometry::{Geometry, Plan};
 use crate::light::Light;
+use crate::mesh_file::MeshFile;
 use crate::motion::Shutter;
 use crate::options::{CompileOptions, RenderOptions};
 use crate::report::{Grid, Report, ReportCamera, ReportLight};
@@ -73,6 +74,11 @@ impl CompiledScene {
     /// Width and height of the picture in pixels.
     pub fn resolution(&self) -> [u32; 2] {
         self.size
+    }
+
+    /// All triangles that the scene shows, in the world; texture coordinates are left out.
+    pub fn triangles(&self) -> MeshFile {
+        self.world.geometry.triangles()
     }
 
     /// Whose meaning the scene's words were given.

@@ -131,6 +131,11 @@ impl MeshShape {
         self.triangles[index].map(|i| self.points[i as usize])
     }
 
+    /// How much memory the triangles take, without normals and texture coordinates.
+    fn bytes(&self) -> usize {
+        self.points.capacity() * size_of::<Vec3>() + self.triangles.capacity() * size_of::<[u32; 3]>()
+    }
+
     /// The texture coordinates of a triangle's corners.
     pub fn triangle_uvs(&self, index: usize) -> Option<[Vec2; 3]> {
         self.uvs.triangle(self, index)
@@ -245,6 +250,11 @@ impl Geometry {
             Shape::Sphere { .. } | Shape::Ellipsoid | Shape::Spheres(_) | Shape::SpheresInstance(_) => false,
             Shape::Analytic(index) => self.tree.analytic.shapes[index as usize].is_flat(),
         }
+    }
+
+    /// How much memory meshes and hierarchy take.
+    pub fn bytes(&self) -> usize {
+        self.tree.bytes() + self.meshes.iter().map(MeshShape::bytes).sum::<usize>()
     }
 
     /// The first hit of every ray.

@@ -33,6 +33,12 @@ struct Moving {
 }
 
 impl Placement {
+    /// Where the object is written, with the first material.
+    pub fn identity() -> Self {
+        let identity = DMat4::IDENTITY;
+        Placement { world_from_object: identity, object_from_world: identity, materials: vec![0], motion: None }
+    }
+
     /// A placement by `world_from_object`, unless that map cannot be inverted.
     pub fn new(world_from_object: DMat4, materials: Vec<u32>) -> Option<Self> {
         let object_from_world = affine::inverse(world_from_object)?;

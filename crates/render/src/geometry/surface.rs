@@ -6,6 +6,7 @@ use super::analytic;
 use super::simd::{self, Simd};
 use super::{Geometry, Hit, Hits, Id, MeshShape, Ray, Rays, Rows, Shape, SphereSet};
 use crate::math;
+use crate::mesh_file::MeshFile;
 
 /// A point on a surface, in the world.
 #[derive(Debug, Clone, Copy)]
@@ -171,6 +172,22 @@ impl Geometry {
             }
             _ => None,
         }
+    }
+
+    /// All triangles in the world, at the middle of the exposure.
+    pub fn triangles(&self) -> MeshFile {
+        let mut all = MeshFile::default();
+        for object in &self.objects {
+            let (mesh, place) = match object.shape {
+                Shape::Mesh(index) => (&self.meshes[index as usize], None),
+                Shape::MeshInstance(index) => (&self.meshes[index as usize], Some(object.pose.world_from_object)),
+                _ => continue,
+            };
+            let first = all.points.len() as u32;
+            all.triangles.extend(mesh.triangles.iter().map(|corners| corners.map(|corner| first + corner)));
+            all.points.extend(mesh.points.iter().map(|&p| place.map_or(p, |place| place.point(p)).to_array()));
+        }
+        all
     }
 
     /// One over the radius of an object that is a sphere; 0 for all else.

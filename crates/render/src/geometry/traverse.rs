@@ -103,6 +103,14 @@ impl InstanceLeaf {
 }
 
 impl Tree {
+    /// How much memory nodes and leaves take.
+    pub fn bytes(&self) -> usize {
+        let instances = self.instances.capacity() * size_of::<InstanceLeaf>();
+        let blocks = self.triangles.capacity() * size_of::<TriangleBlock>();
+        let spheres = self.spheres.capacity() * size_of::<SphereBlock>();
+        self.nodes.capacity() * size_of::<Node>() + blocks + spheres + instances
+    }
+
     /// Improves `hit` by what lies below `root`, whose box the ray enters at `enter`. With `ANY`, anything closer will
     /// do.
     #[inline(always)]

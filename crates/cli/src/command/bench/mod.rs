@@ -3,6 +3,7 @@
 mod noise;
 #[cfg(feature = "bench-peers")]
 mod peers;
+mod rays;
 mod scenes;
 mod stopwatch;
 
@@ -22,6 +23,7 @@ pub struct Bench {
 #[derive(Debug, Subcommand)]
 enum What {
     Noise(noise::Noise),
+    Rays(rays::Rays),
     Scenes(scenes::Scenes),
 }
 
@@ -30,6 +32,7 @@ impl Bench {
     pub fn run(self) -> Result<Outcome, Failure> {
         match self.what {
             What::Noise(noise) => noise.run(),
+            What::Rays(rays) => rays.run(),
             What::Scenes(scenes) => scenes.run(),
         }
     }
