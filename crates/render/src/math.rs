@@ -56,7 +56,7 @@ pub(crate) fn sin_cos_turns(turns: f32) -> (f32, f32) {
 }
 
 /// The direction that a circle around `w` has at `turn` of a full turn: `sine` away from it, `cosine` along it.
-#[inline]
+#[inline(always)]
 pub(crate) fn around(w: Vec3, turn: f32, sine: f32, cosine: f32) -> Vec3 {
     let (u, v) = basis(w);
     let (sin, cos) = sin_cos_turns(turn);
@@ -64,6 +64,7 @@ pub(crate) fn around(w: Vec3, turn: f32, sine: f32, cosine: f32) -> Vec3 {
 }
 
 /// A direction of the hemisphere around `normal`, its density proportional to the cosine.
+#[inline(always)]
 pub(crate) fn cosine_hemisphere(normal: Vec3, [u, v]: [f32; 2]) -> Vec3 {
     around(normal, u, v.sqrt(), (1.0 - v).sqrt())
 }
@@ -130,6 +131,7 @@ pub(crate) fn unit_normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
 
 /// A vector of unit length at a right angle to `w`, and the third one: (u, v) with w = u × v
 /// ([Duff et al. 2017] "Building an Orthonormal Basis, Revisited").
+#[inline(always)]
 pub(crate) fn basis(w: Vec3) -> (Vec3, Vec3) {
     let sign = 1.0f32.copysign(w.z);
     let a = -1.0 / (sign + w.z);

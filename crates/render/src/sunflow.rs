@@ -19,13 +19,13 @@ use jaspe_texture::Space;
 use crate::clock::{Clock, Spent, Stage};
 use crate::environment::Environment;
 use crate::geometry::{Geometry, Hit, Hits, Rays, Rows, Scratch, Surface};
-use crate::light::Light;
+use crate::light::{Fan, Light};
 use crate::material::{Albedo, Coat, Gloss, Response};
 use crate::options::{Look, Observer};
 use crate::wave::{Batch, Path, Queues, RayKind, Rules, World};
 use caustics::{CausticMap, Nearest};
 use coat::Bsdf;
-use direct::{Lit, Shadows};
+use direct::{Lit, Shadows, Waiting};
 pub(crate) use indirect::Indirect;
 use photons::Senders;
 use point::{Point, Points};
@@ -77,6 +77,8 @@ pub(crate) struct Room {
     /// Of the coat.
     gloss: Vec<[f32; 3]>,
     shadows: Shadows,
+    waiting: Waiting,
+    fan: Fan,
     /// What short rays meet.
     near: Hits,
     nearest: Nearest,
@@ -106,7 +108,7 @@ impl Rules for Sunflow {
             if !bsdf.is_black() {
                 lit.push(Lit { point, bsdf, color });
             }
-            room.flush(batch.geometry, queues);
+            room.shadows.flush(batch.geometry, queues, &mut room.scratch);
         }
         self.illuminate(batch.geometry, &lit, room, queues);
         if let Indirect::VirtualLights(lights) = &self.indirect {
@@ -171,13 +173,6 @@ impl Room {
             Gloss::Painted(albedo) => paint(albedo, batch, points, texture_points, gloss),
         }
         clock.lap(Stage::Texture);
-    }
-
-    /// Traces the shadow rays if there are many.
-    fn flush(&mut self, geometry: &Geometry, queues: &mut Queues<Vec3>) {
-        if self.shadows.is_full() {
-            self.shadows.trace(geometry, queues, &mut self.scratch);
-        }
     }
 
     /// A prepared point.
@@ -252,12 +247,12 @@ impl Sunflow {
             // Behind a blurred ray mirrors and glass are black: §3.6.
             Response::Mirror | Response::Glass { .. } => {}
             Response::AmbientOcclusion { dark, samples, distance } => {
-                self.occlusion(point, [*dark, point.color], *samples, *distance, &mut room.shadows, queues);
+                self.occlusion(point, [*dark, point.color], *samples, *distance, room, queues);
             }
             Response::Wireframe { line, width } => self.wireframe(batch, point, *line, *width, queues),
-            Response::ViewIrradiance => self.gather(point, Vec3::ONE, &mut room.shadows, queues),
+            Response::ViewIrradiance => self.gather(point, Vec3::ONE, room, queues),
             Response::ViewCaustics => self.add_caustics(point, Vec3::ONE, &mut room.nearest, queues),
-            Response::Look(look) => self.look(batch, point, *look, &mut room.shadows, queues),
+            Response::Look(look) => self.look(batch, point, *look, room, queues),
         }
         (Bsdf::matte(Vec3::ZERO), Vec3::ZERO)
     }
@@ -301,7 +296,7 @@ impl Sunflow {
             }
         }
         if color != Vec3::ZERO {
-            self.gather(point, color, &mut room.shadows, queues);
+            self.gather(point, color, room, queues);
             self.add_caustics(point, color, &mut room.nearest, queues);
         }
         (bsdf, color)

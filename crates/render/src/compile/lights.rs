@@ -9,9 +9,9 @@ use jaspe_scene::{Diagnostics, Dialect, Scene};
 use super::bounded;
 use super::materials::{Materials, Pictures, working};
 use crate::affine;
-use crate::environment::{self, Environment};
+use crate::environment::{self, Environment, Table};
 use crate::geometry::{MeshShape, Placement, Plan};
-use crate::light::{Ball, Ceiling, Light, Shining};
+use crate::light::{Arrival, Ball, Beam, Ceiling, Lamp, Light, Shining};
 use crate::material::{Albedo, Coat, Material, Response};
 
 /// The lights of a scene.
@@ -76,13 +76,14 @@ impl Lit {
         let shining = |radiance| Material::new(Albedo::Color(radiance), Response::Emitter);
         match kind {
             LightKind::Point { color, power, position } => {
-                self.lights.push(Light::Point { position: Vec3::from_array(*position), power: linear(color) * *power });
+                let (position, power) = (Vec3::from_array(*position), linear(color) * *power);
+                self.lights.push(Light::Point(Lamp { position, power }));
             }
             LightKind::Directional { source, target, radius, emit, intensity } => {
                 let source = Vec3::from_array(*source);
                 if let Some(direction) = (Vec3::from_array(*target) - source).try_normalize() {
                     let irradiance = linear(emit) * *intensity;
-                    self.lights.push(Light::Directional { source, direction, radius: *radius, irradiance });
+                    self.lights.push(Light::Directional(Beam { source, direction, radius: *radius, irradiance }));
                 }
             }
             LightKind::Spherical { color, radiance, center, radius, samples } => {
@@ -109,8 +110,8 @@ impl Lit {
                     Ground::Sky => None,
                     Ground::Color(color) => Some(linear(color)),
                 };
-                if let Some((towards, irradiance)) = environment::sun(up, sundir, *turbidity) {
-                    self.lights.push(Light::Sun { towards, irradiance });
+                if let Some((direction, irradiance)) = environment::sun(up, sundir, *turbidity) {
+                    self.lights.push(Light::Sun(Arrival { direction, distance: f32::INFINITY, irradiance }));
                 }
                 let sky = Environment::sky(up, east, sundir, *turbidity, ground);
                 self.surround(sky, [*samples, *samples], false);
@@ -132,7 +133,7 @@ impl Lit {
         let light = if lock {
             Light::beams(&environment, [samples, low_samples], self.lights.len() as u64)
         } else {
-            Light::Surroundings { environment: environment.clone(), samples }
+            Light::Surroundings { table: Arc::new(Table::new(&environment)), samples }
         };
         self.lights.push(light);
         self.surroundings.get_or_insert(environment);

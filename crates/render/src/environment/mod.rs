@@ -6,8 +6,10 @@ mod distribution;
 mod panorama;
 mod sky;
 mod sun;
+mod table;
 
 pub(crate) use sun::sun;
+pub(crate) use table::Table;
 
 use std::sync::Arc;
 

@@ -47,7 +47,13 @@ impl Rows {
     /// As many rows as asked for, all of the same length, which the compiler can then rely on.
     #[inline(always)]
     pub fn slices(&self, count: usize) -> [&[f32]; 3] {
-        [&self.x[..count], &self.y[..count], &self.z[..count]]
+        self.part(0, count)
+    }
+
+    /// [`Rows::slices`], from `first` on.
+    #[inline(always)]
+    pub fn part(&self, first: usize, count: usize) -> [&[f32]; 3] {
+        [&self.x[first..][..count], &self.y[first..][..count], &self.z[first..][..count]]
     }
 
     /// [`Rows::slices`], to write to.

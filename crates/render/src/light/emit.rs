@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::Light;
+use super::{Beam, Lamp, Light};
 use crate::math;
 
 impl Light {
@@ -10,15 +10,15 @@ impl Light {
     pub fn power(&self) -> Vec3 {
         let pi = std::f32::consts::PI;
         match self {
-            Light::Point { power, .. } => *power,
-            Light::Directional { radius, irradiance, .. } => *irradiance * (pi * radius * radius),
+            Light::Point(lamp) => lamp.power,
+            Light::Directional(beam) => beam.irradiance * (pi * beam.radius * beam.radius),
             Light::Ball(ball) => ball.radiance * (4.0 * pi * pi * ball.radius * ball.radius),
             Light::Ceiling(light) => light.radiance * (pi * light.area()),
             Light::Triangles { triangles, .. } => {
                 let area: f32 = triangles.iter().map(|triangle| triangle.area).sum();
                 triangles.first().map_or(Vec3::ZERO, |triangle| triangle.radiance * (pi * area))
             }
-            Light::Sun { .. } | Light::Surroundings { .. } | Light::Beams(_) => Vec3::ZERO,
+            Light::Sun(_) | Light::Surroundings { .. } | Light::Beams(_) => Vec3::ZERO,
         }
     }
 
@@ -34,12 +34,12 @@ impl Light {
     /// point may be `crowded` as in Sunflow (R16), which instant radiosity is scaled by.
     pub fn emit(&self, place: [f32; 2], [u, v]: [f32; 2], crowded: bool) -> Option<(Vec3, Vec3)> {
         match self {
-            Light::Point { position, .. } if crowded => {
+            Light::Point(Lamp { position, .. }) if crowded => {
                 let around = math::around(Vec3::Z, u, (v * (1.0 - v)).sqrt(), 1.0 - 2.0 * v);
                 Some((*position, around.normalize_or(Vec3::Z)))
             }
-            Light::Point { position, .. } => Some((*position, sphere([u, v]))),
-            Light::Directional { source, direction, radius, .. } => {
+            Light::Point(Lamp { position, .. }) => Some((*position, sphere([u, v]))),
+            Light::Directional(Beam { source, direction, radius, .. }) => {
                 let [turn, out] = place;
                 Some((*source + math::around(*direction, turn, out.sqrt() * radius, 0.0), *direction))
             }
@@ -61,7 +61,7 @@ impl Light {
                 let origin = math::offset(triangle.point(place), triangle.normal);
                 Some((origin, math::cosine_hemisphere(triangle.normal, [u, v])))
             }
-            Light::Sun { .. } | Light::Surroundings { .. } | Light::Beams(_) => None,
+            Light::Sun(_) | Light::Surroundings { .. } | Light::Beams(_) => None,
         }
     }
 }

@@ -3,6 +3,7 @@
 mod cornell;
 mod emit;
 mod fan;
+mod single;
 mod sphere;
 mod triangle;
 
@@ -10,9 +11,11 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::environment::Environment;
+use crate::environment::{self, Environment};
 use crate::sampler::SampleKey;
 pub(crate) use cornell::Ceiling;
+pub(crate) use fan::{FAN, Fan, Shape};
+pub(crate) use single::{Beam, Lamp, Single};
 pub(crate) use sphere::Ball;
 use triangle::Seen;
 pub(crate) use triangle::Shining;
@@ -20,20 +23,24 @@ pub(crate) use triangle::Shining;
 /// A light in the world.
 #[derive(Debug, Clone)]
 pub(crate) enum Light {
-    /// Radiant power, spread evenly over all directions.
-    Point { position: Vec3, power: Vec3 },
-    /// A parallel beam; `irradiance` falls on a surface that faces it.
-    Directional { source: Vec3, direction: Vec3, radius: f32, irradiance: Vec3 },
-    /// A parallel beam from infinitely far away, which `towards` points to.
-    Sun { towards: Vec3, irradiance: Vec3 },
+    Point(Lamp),
+    Directional(Beam),
+    /// Parallel light from infinitely far away.
+    Sun(Arrival),
     /// A shining sphere.
     Ball(Ball),
     /// Shining triangles.
-    Triangles { triangles: Arc<[Shining]>, samples: u32 },
+    Triangles {
+        triangles: Arc<[Shining]>,
+        samples: u32,
+    },
     /// The light in the ceiling of a Cornell box.
     Ceiling(Ceiling),
     /// The surroundings, looked at in other directions by every point.
-    Surroundings { environment: Arc<Environment>, samples: u32 },
+    Surroundings {
+        table: Arc<environment::Table>,
+        samples: u32,
+    },
     /// Parallel light from a few directions that all points share; points that light comes to by way of others take the
     /// second list.
     Beams([Arc<[Arrival]>; 2]),
@@ -65,6 +72,11 @@ pub(crate) struct Arrival {
     pub irradiance: Vec3,
 }
 
+impl Arrival {
+    /// No light.
+    pub const NONE: Arrival = Arrival { direction: Vec3::ZERO, distance: 0.0, irradiance: Vec3::ZERO };
+}
+
 /// Rays towards a shape that shines end so much before it that they do not meet it.
 pub(crate) const BEFORE: f32 = 0.9999;
 /// Triangles of one light up to which every one gets its own samples; of more, samples choose.
@@ -76,62 +88,51 @@ impl Light {
     /// The surroundings as beams from so many directions, for direct and for indirect light.
     pub fn beams(environment: &Environment, counts: [u32; 2], number: u64) -> Light {
         let beams = |count: u32| {
-            let beam = |i: u32| beam(environment, SampleKey::shared(i, number + 1).pair(0), count as f32);
+            let beam = |i: u32| {
+                let (direction, light) = environment.sample(SampleKey::shared(i, number + 1).pair(0))?;
+                Some(Arrival { direction, distance: f32::INFINITY, irradiance: light / count as f32 })
+            };
             (0..count).filter_map(beam).collect()
         };
         Light::Beams(counts.map(beams))
     }
 
-    /// What arrives at a point, if nothing is in the way: light `number` of the scene, sample by sample. Beams are left
-    /// out.
-    #[inline]
-    pub fn arrive(&self, number: u32, at: &Receiver, each: &mut impl FnMut(Arrival)) {
+    /// What arrives at a point, if nothing is in the way: light `number` of the scene, a fan of samples after the other.
+    /// Those that are [`Single`], and beams, are left out.
+    pub fn arrive(&self, number: u32, at: &Receiver, fan: &mut Fan, each: &mut impl FnMut(&mut Fan)) {
+        let dimension = at.dimension + number;
         match self {
-            Light::Point { position, power } => {
-                let to = *position - at.point;
-                let distance2 = to.length_squared();
-                if distance2 > 0.0 {
-                    let distance = distance2.sqrt();
-                    let irradiance = *power * (1.0 / (4.0 * std::f32::consts::PI * distance2));
-                    each(Arrival { direction: to / distance, distance, irradiance });
-                }
-            }
-            Light::Directional { source, direction, radius, irradiance } => {
-                let along = (at.point - *source).dot(*direction);
-                let off = at.point - *source - *direction * along;
-                if along >= 0.0 && off.length_squared() <= radius * radius {
-                    each(Arrival { direction: -*direction, distance: along, irradiance: *irradiance });
-                }
-            }
-            Light::Sun { towards, irradiance } => {
-                each(Arrival { direction: *towards, distance: f32::INFINITY, irradiance: *irradiance });
-            }
-            Light::Beams(_) => {}
+            Light::Point(_) | Light::Directional(_) | Light::Sun(_) | Light::Beams(_) => {}
             Light::Ball(ball) => {
                 if let Some(cone) = ball.seen_from(at.point) {
-                    fan::spread(at, number, ball.samples, &cone, ball.radiance, each);
+                    fan.spread(at.key, dimension, at.count(ball.samples), &cone, ball.radiance, each);
                 }
             }
             Light::Ceiling(light) => {
                 if let Some(seen) = light.seen_from(at.point) {
-                    fan::spread(at, number, light.samples, &seen, light.radiance, each);
+                    fan.spread(at.key, dimension, at.count(light.samples), &seen, light.radiance, each);
                 }
             }
             Light::Triangles { triangles, samples } if triangles.len() <= EACH => {
+                let (count, key) = (at.count(*samples), at.key);
                 for triangle in triangles.iter() {
                     match triangle.seen_from(at) {
-                        Some(Seen::Wide(wide)) => fan::spread(at, number, *samples, &wide, triangle.radiance, each),
-                        Some(Seen::Small(small)) => fan::spread(at, number, *samples, &small, triangle.radiance, each),
+                        Some(Seen::Wide(wide)) => fan.spread(key, dimension, count, &wide, triangle.radiance, each),
+                        Some(Seen::Small(small)) => fan.spread(key, dimension, count, &small, triangle.radiance, each),
                         None => {}
                     }
                 }
             }
             Light::Triangles { triangles, samples } => {
                 let samples = samples.saturating_mul(triangles.len() as u32).min((*samples).max(CHOSEN));
-                one_by_one(at, number, samples, |xi, n| triangle::choose(triangles, at, xi, n), each);
+                fan.choose(at.key, dimension, at.count(samples), |xi| triangle::choose(triangles, at, xi), each);
             }
-            Light::Surroundings { environment, samples } => {
-                one_by_one(at, number, *samples, |xi, n| beam(environment, xi, n), each);
+            Light::Surroundings { table, samples } => {
+                let look_up = |xi| {
+                    let (direction, irradiance) = table.sample(xi);
+                    Arrival { direction, distance: f32::INFINITY, irradiance }
+                };
+                fan.choose(at.key, dimension, at.count(*samples), look_up, each);
             }
         }
     }
@@ -141,28 +142,5 @@ impl Receiver {
     /// How many samples it takes of a light that asks for `samples`.
     pub fn count(&self, samples: u32) -> u32 {
         if self.indirect { samples.min(1) } else { samples.div_ceil(self.share.max(1)) }
-    }
-}
-
-/// Sample `xi` of `count` of the surroundings.
-#[inline]
-fn beam(environment: &Environment, xi: [f32; 2], count: f32) -> Option<Arrival> {
-    let (direction, radiance) = environment.sample(xi)?;
-    Some(Arrival { direction, distance: f32::INFINITY, irradiance: radiance / count })
-}
-
-/// Samples of a light each of which costs its own search; `look` gets two uniform numbers and the number of samples.
-#[inline]
-fn one_by_one(
-    at: &Receiver,
-    number: u32,
-    samples: u32,
-    look: impl Fn([f32; 2], f32) -> Option<Arrival>,
-    each: &mut impl FnMut(Arrival),
-) {
-    let count = at.count(samples);
-    for i in 0..count {
-        let xi = at.key.nth(i, count).pair(at.dimension + number);
-        look(xi, count as f32).into_iter().for_each(&mut *each);
     }
 }

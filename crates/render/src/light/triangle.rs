@@ -69,13 +69,13 @@ impl Shining {
 }
 
 /// A sample of a light of many triangles: one of them is chosen by its area.
-pub(super) fn choose(triangles: &[Shining], at: &Receiver, xi: [f32; 2], count: f32) -> Option<Arrival> {
-    let (triangle, place) = by_area(triangles, xi)?;
+pub(super) fn choose(triangles: &[Shining], at: &Receiver, xi: [f32; 2]) -> Arrival {
+    let Some((triangle, place)) = by_area(triangles, xi) else { return Arrival::NONE };
     // By the area of all: as often as it is chosen it stands for the others.
     let seen =
         Small { to: triangle.corners.map(|corner| corner - at.point), normal: triangle.normal, area: triangle.total };
     let (direction, distance, weight) = seen.sample(place);
-    (weight > 0.0).then(|| Arrival { direction, distance, irradiance: triangle.radiance * (weight / count) })
+    Arrival { direction, distance, irradiance: triangle.radiance * weight.max(0.0) }
 }
 
 /// A triangle, the larger the likelier, and what is left of the two uniform numbers.

@@ -53,6 +53,11 @@ impl Bsdf {
         self.matte == Vec3::ZERO && matches!(self.lobe, Lobe::None)
     }
 
+    /// What it is for light from anywhere in front, where that is all the same.
+    pub fn matte_only(&self) -> Option<Vec3> {
+        matches!(self.lobe, Lobe::None).then_some(self.matte)
+    }
+
     /// For light from a direction.
     #[inline]
     pub fn value(&self, direction: Vec3) -> Vec3 {

@@ -1,5 +1,6 @@
 //! Light that comes straight from the lights.
 
+use std::iter::repeat_n;
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -8,14 +9,15 @@ use super::coat::Bsdf;
 use super::point::{Point, Which};
 use super::{Queues, Room, Sunflow};
 use crate::clock::Stage;
-use crate::geometry::{Geometry, Ray, Rays, Scratch};
-use crate::light::{Arrival, Light, Receiver};
+use crate::geometry::simd::{self, Simd};
+use crate::geometry::{Geometry, Ids, Ray, Rays, Rows, Scratch};
+use crate::light::{Arrival, FAN, Fan, Light, Receiver, Single};
 
 /// Rays towards lights, and what arrives if nothing is in the way.
 #[derive(Default)]
 pub(super) struct Shadows {
     rays: Rays,
-    light: Vec<Vec3>,
+    light: Rows,
     nodes: Vec<u32>,
     blocked: Vec<bool>,
 }
@@ -24,15 +26,63 @@ impl Shadows {
     /// Shadow rays that are traced together at most, give or take those of one point.
     const FULL: usize = 4096;
 
-    pub fn is_full(&self) -> bool {
-        self.nodes.len() >= Shadows::FULL
-    }
-
     /// Queues a ray that brings `light` to a node.
     pub fn push(&mut self, ray: Ray, light: Vec3, node: u32) {
         self.rays.push(ray);
         self.light.push(light);
         self.nodes.push(node);
+    }
+
+    /// Queues what is kept of a fan from one point, by whose path it goes on.
+    pub fn push_fan(&mut self, fan: &Fan, kept: &Kept, point: &Point<'_>) {
+        self.push_arrivals(fan, kept);
+        let (count, Vec3 { x, y, z }) = (kept.count, point.front);
+        let Rays { origin, skip, time, .. } = &mut self.rays;
+        origin.x.extend(repeat_n(x, count));
+        origin.y.extend(repeat_n(y, count));
+        origin.z.extend(repeat_n(z, count));
+        skip.object.extend(repeat_n(point.skip.object, count));
+        skip.index.extend(repeat_n(point.skip.index, count));
+        time.extend(point.hit.time.into_iter().flat_map(|time| repeat_n(time, count)));
+        self.nodes.extend(repeat_n(point.path.node, count));
+    }
+
+    /// Queues what is kept of a fan from surfaces that wait, of which those from `first` on belong to it.
+    fn push_sheaf(&mut self, fan: &Fan, kept: &Kept, waiting: &Waiting, first: usize) {
+        self.push_arrivals(fan, kept);
+        let of = |row: &mut Vec<f32>, from: &[f32]| row.extend(kept.of(&from[first..]));
+        let Rays { origin, skip, time, .. } = &mut self.rays;
+        of(&mut origin.x, &waiting.front.x);
+        of(&mut origin.y, &waiting.front.y);
+        of(&mut origin.z, &waiting.front.z);
+        skip.object.extend(kept.of(&waiting.skip.object[first..]));
+        skip.index.extend(kept.of(&waiting.skip.index[first..]));
+        if !waiting.time.is_empty() {
+            of(time, &waiting.time);
+        }
+        self.nodes.extend(kept.of(&waiting.node[first..]));
+    }
+
+    fn push_arrivals(&mut self, fan: &Fan, kept: &Kept) {
+        let of = |row: &mut Vec<f32>, from: &[f32; FAN]| match kept.count == fan.size {
+            true => row.extend_from_slice(&from[..fan.size]),
+            false => row.extend(kept.of(from)),
+        };
+        let ([x, y, z], [red, green, blue]) = (&fan.direction, &fan.irradiance);
+        of(&mut self.rays.direction.x, x);
+        of(&mut self.rays.direction.y, y);
+        of(&mut self.rays.direction.z, z);
+        of(&mut self.rays.t_max, &fan.distance);
+        of(&mut self.light.x, red);
+        of(&mut self.light.y, green);
+        of(&mut self.light.z, blue);
+    }
+
+    /// Traces what is queued if it is much.
+    pub fn flush(&mut self, geometry: &Geometry, queues: &mut Queues<Vec3>, scratch: &mut Scratch) {
+        if self.nodes.len() >= Shadows::FULL {
+            self.trace(geometry, queues, scratch);
+        }
     }
 
     /// Traces what is queued and hands out what arrives.
@@ -41,9 +91,9 @@ impl Shadows {
         queues.clock.lap(Stage::Shade);
         geometry.occluded(self.rays.view(0.0), &mut self.blocked, scratch);
         queues.clock.lap(Stage::Trace);
-        for ((&light, &node), &blocked) in self.light.iter().zip(&self.nodes).zip(&self.blocked) {
+        for (i, (&node, &blocked)) in self.nodes.iter().zip(&self.blocked).enumerate() {
             if !blocked {
-                queues.nodes[node as usize] += light;
+                queues.nodes[node as usize] += self.light.get(i);
             }
         }
         self.rays.clear();
@@ -61,66 +111,226 @@ pub(super) struct Lit<'a> {
 }
 
 impl Lit<'_> {
-    /// Queues a ray towards light that arrives, unless the surface makes nothing of it.
-    #[inline]
-    pub fn ask(&self, arrival: Arrival, shadows: &mut Shadows) {
-        let (point, Arrival { direction, distance, irradiance }) = (&self.point, arrival);
-        let cosine = direction.dot(point.surface.normal);
-        if cosine <= 0.0 || direction.dot(point.surface.geometric) <= 0.0 {
-            return;
+    /// What the surface makes of light from anywhere, if that is the same for all: else 1, and [`Lit::gloss`] the rest.
+    fn even(&self) -> Vec3 {
+        self.bsdf.matte_only().map_or(Vec3::ONE, |matte| self.point.path.weight * matte)
+    }
+
+    /// What it makes of the light from the direction of arrival `i`, if that is not [`Lit::even`].
+    fn gloss(&self, fan: &mut Fan, i: usize) {
+        if self.bsdf.matte_only().is_none() {
+            let value = self.point.path.weight * self.bsdf.value(fan.direction(i));
+            fan.irradiance.iter_mut().zip(value.to_array()).for_each(|(row, value)| row[i] *= value);
         }
-        let light = point.path.weight * self.bsdf.value(direction) * irradiance * cosine;
-        if light != Vec3::ZERO {
-            shadows.push(point.toward(direction, distance), light, point.path.node);
+    }
+}
+
+/// Surfaces that wait for light, in rows.
+#[derive(Default)]
+pub(super) struct Waiting {
+    /// What each of them is among all.
+    order: Vec<u32>,
+    /// Where rays towards light start.
+    front: Rows,
+    normal: Rows,
+    geometric: Rows,
+    even: Rows,
+    skip: Ids,
+    node: Vec<u32>,
+    /// Empty where nothing moves.
+    time: Vec<f32>,
+}
+
+impl Waiting {
+    /// Some of the surfaces, in an order.
+    fn fill(&mut self, lit: &[Lit<'_>], some: impl Iterator<Item = u32>) {
+        let Waiting { order, front, normal, geometric, even, skip, node, time } = self;
+        [&mut *front, normal, geometric, even].into_iter().for_each(Rows::clear);
+        [&mut *order, node].into_iter().for_each(Vec::clear);
+        skip.clear();
+        time.clear();
+        order.extend(some);
+        for lit in order.iter().map(|&i| &lit[i as usize]) {
+            let point = &lit.point;
+            front.push(point.front);
+            normal.push(point.surface.normal);
+            geometric.push(point.surface.geometric);
+            even.push(lit.even());
+            skip.push(point.skip);
+            node.push(point.path.node);
+            time.extend(point.hit.time);
         }
+    }
+}
+
+/// Which arrivals of a fan are worth a ray.
+pub(super) struct Kept {
+    indices: [u8; FAN],
+    count: usize,
+}
+
+impl Kept {
+    /// Those for which `is_kept` says so, of the first `size`.
+    #[inline(always)]
+    pub fn among(is_kept: &[bool; FAN], size: usize) -> Kept {
+        let mut kept = Kept { indices: [0; FAN], count: 0 };
+        for (i, &is_kept) in (0..).zip(&is_kept[..size.min(FAN)]) {
+            kept.indices[kept.count] = i;
+            kept.count += usize::from(is_kept);
+        }
+        kept
+    }
+
+    fn indices(&self) -> &[u8] {
+        &self.indices[..self.count]
+    }
+
+    fn of<T: Copy>(&self, row: &[T]) -> impl ExactSizeIterator<Item = T> {
+        self.indices().iter().map(|&i| row[usize::from(i)])
+    }
+}
+
+/// Whether light that comes from a direction falls onto the front of a surface, and what that makes of it.
+#[inline(always)]
+fn fall(direction: Vec3, irradiance: Vec3, [normal, geometric, even]: [Vec3; 3]) -> (bool, Vec3) {
+    let cosine = direction.dot(normal);
+    let light = even * irradiance * cosine;
+    let some = (light.x != 0.0) | (light.y != 0.0) | (light.z != 0.0);
+    ((cosine > 0.0) & (direction.dot(geometric) > 0.0) & some, light)
+}
+
+/// What one surface makes of a fan: its normals and [`Lit::even`].
+struct Fall<'a> {
+    fan: &'a mut Fan,
+    surface: [Vec3; 3],
+}
+
+impl simd::Kernel for Fall<'_> {
+    type Output = Kept;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> Kept {
+        let Fan { size, direction: [x, y, z], irradiance: [red, green, blue], .. } = self.fan;
+        let mut is_kept = [false; FAN];
+        for i in 0..size.next_multiple_of(8).min(FAN) {
+            let (direction, irradiance) = (Vec3::new(x[i], y[i], z[i]), Vec3::new(red[i], green[i], blue[i]));
+            let light;
+            (is_kept[i], light) = fall(direction, irradiance, self.surface);
+            (red[i], green[i], blue[i]) = (light.x, light.y, light.z);
+        }
+        Kept::among(&is_kept, *size)
+    }
+}
+
+/// What surfaces that wait, from `first` on, make of a light.
+struct Reach<'a, L> {
+    light: &'a L,
+    waiting: &'a Waiting,
+    first: usize,
+    fan: &'a mut Fan,
+}
+
+impl<L: Single> simd::Kernel for Reach<'_, L> {
+    type Output = Kept;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> Kept {
+        let Reach { light, waiting, first, fan } = self;
+        let size = (waiting.node.len() - first).min(FAN);
+        fan.size = size;
+        let [px, py, pz] = waiting.front.part(first, size);
+        let [nx, ny, nz] = waiting.normal.part(first, size);
+        let [gx, gy, gz] = waiting.geometric.part(first, size);
+        let [er, eg, eb] = waiting.even.part(first, size);
+        let ([x, y, z], [red, green, blue]) = (&mut fan.direction, &mut fan.irradiance);
+        let mut is_kept = [false; FAN];
+        for i in 0..size {
+            let (normal, geometric) = (Vec3::new(nx[i], ny[i], nz[i]), Vec3::new(gx[i], gy[i], gz[i]));
+            let Arrival { direction, distance, irradiance } = light.reach(Vec3::new(px[i], py[i], pz[i]));
+            let light;
+            (is_kept[i], light) = fall(direction, irradiance, [normal, geometric, Vec3::new(er[i], eg[i], eb[i])]);
+            (x[i], y[i], z[i]) = (direction.x, direction.y, direction.z);
+            fan.distance[i] = distance;
+            (red[i], green[i], blue[i]) = (light.x, light.y, light.z);
+        }
+        Kept::among(&is_kept, size)
     }
 }
 
 impl Sunflow {
     /// Direct light on surfaces, one light after the other, so that the rays towards it go together.
     pub(super) fn illuminate(&self, geometry: &Geometry, lit: &[Lit<'_>], room: &mut Room, queues: &mut Queues<Vec3>) {
+        room.waiting.fill(lit, 0..lit.len() as u32);
         for (light, number) in self.lights.iter().zip(0..) {
-            if let Light::Beams(beams) = light {
-                self.shine(beams, geometry, lit, room, queues);
-                continue;
-            }
-            for lit in lit {
-                let point = &lit.point;
-                let at = Receiver {
-                    point: point.front,
-                    normal: point.surface.normal,
-                    indirect: point.path.depth.diffuse > 0,
-                    share: point.share,
-                    key: point.key,
-                    dimension: point.dimension(Which::Lights),
-                };
-                light.arrive(number, &at, &mut |arrival| lit.ask(arrival, &mut room.shadows));
-                room.flush(geometry, queues);
+            match light {
+                Light::Point(lamp) => shine(lamp, geometry, lit, room, queues),
+                Light::Directional(beam) => shine(beam, geometry, lit, room, queues),
+                Light::Sun(sun) => shine(sun, geometry, lit, room, queues),
+                Light::Beams(beams) => {
+                    shine_in_turn(beams, geometry, lit, room, queues);
+                    room.waiting.fill(lit, 0..lit.len() as u32);
+                }
+                _ => {
+                    let Room { fan, shadows, scratch, .. } = room;
+                    for lit in lit {
+                        let point = &lit.point;
+                        let at = Receiver {
+                            point: point.front,
+                            normal: point.surface.normal,
+                            indirect: point.path.depth.diffuse > 0,
+                            share: point.share,
+                            key: point.key,
+                            dimension: point.dimension(Which::Lights),
+                        };
+                        let surface = [point.surface.normal, point.surface.geometric, lit.even()];
+                        light.arrive(number, &at, fan, &mut |fan| {
+                            let kept = simd::run(Fall { fan, surface });
+                            kept.indices().iter().for_each(|&i| lit.gloss(fan, usize::from(i)));
+                            shadows.push_fan(fan, &kept, point);
+                        });
+                        shadows.flush(geometry, queues, scratch);
+                    }
+                }
             }
         }
     }
+}
 
-    /// Beams, of which the samples of a pixel take one each in turn.
-    fn shine(
-        &self,
-        beams: &[Arc<[Arrival]>; 2],
-        geometry: &Geometry,
-        lit: &[Lit<'_>],
-        room: &mut Room,
-        queues: &mut Queues<Vec3>,
-    ) {
-        let longest = beams[0].len().max(beams[1].len());
-        for number in 0..longest {
-            for lit in lit {
-                let point = &lit.point;
-                let beams = &beams[usize::from(point.path.depth.diffuse > 0)];
-                let share = (point.of.max(1) as usize).min(beams.len().max(1));
-                if number < beams.len() && number % share == point.key.index as usize % share {
-                    let beam = beams[number];
-                    lit.ask(Arrival { irradiance: beam.irradiance * share as f32, ..beam }, &mut room.shadows);
-                }
-            }
-            room.flush(geometry, queues);
+/// Light that comes to every surface that waits from one direction.
+fn shine(light: &impl Single, geometry: &Geometry, lit: &[Lit<'_>], room: &mut Room, queues: &mut Queues<Vec3>) {
+    let Room { waiting, fan, shadows, scratch, .. } = room;
+    for first in (0..waiting.node.len()).step_by(FAN) {
+        let kept = simd::run(Reach { light, waiting, first, fan });
+        for &i in kept.indices() {
+            lit[waiting.order[first + usize::from(i)] as usize].gloss(fan, usize::from(i));
+        }
+        shadows.push_sheaf(fan, &kept, waiting, first);
+        shadows.flush(geometry, queues, scratch);
+    }
+}
+
+/// Beams, of which the samples of a pixel take one each in turn.
+fn shine_in_turn(
+    beams: &[Arc<[Arrival]>; 2],
+    geometry: &Geometry,
+    lit: &[Lit<'_>],
+    room: &mut Room,
+    queues: &mut Queues<Vec3>,
+) {
+    let group = |lit: &Lit<'_>| {
+        let Point { path, key, of, .. } = &lit.point;
+        let indirect = path.depth.diffuse > 0;
+        let share = (*of as usize).clamp(1, beams[usize::from(indirect)].len().max(1));
+        (indirect, share, key.index as usize % share)
+    };
+    let mut groups: Vec<_> = (0..).zip(lit).map(|(i, lit)| (group(lit), i)).collect();
+    groups.sort_unstable();
+    for members in groups.chunk_by(|(a, _), (b, _)| a == b) {
+        let (indirect, share, turn) = members[0].0;
+        room.waiting.fill(lit, members.iter().map(|&(_, i)| i));
+        for beam in beams[usize::from(indirect)].iter().skip(turn).step_by(share) {
+            let beam = Arrival { irradiance: beam.irradiance * share as f32, ..*beam };
+            shine(&beam, geometry, lit, room, queues);
         }
     }
 }

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::direct::Shadows;
+use super::direct::Kept;
 use super::point::{Point, Which};
 use super::virtual_lights::VirtualLights;
-use super::{Queues, Sunflow};
+use super::{Queues, Room, Sunflow};
+use crate::geometry::simd::{self, Simd};
+use crate::light::{FAN, Fan, Shape};
 use crate::math;
 use crate::wave::{Path, RayKind};
 
@@ -42,9 +44,42 @@ pub(crate) enum Indirect {
     },
 }
 
+/// The hemisphere above a surface, the density of its samples proportional to the cosine.
+struct Sky {
+    normal: Vec3,
+    distance: f32,
+}
+
+impl Shape for Sky {
+    #[inline(always)]
+    fn sample(&self, xi: [f32; 2]) -> (Vec3, f32, f32) {
+        (math::cosine_hemisphere(self.normal, xi), self.distance, 1.0)
+    }
+}
+
+/// Keeps the directions of a fan that leave a surface.
+struct Above<'a> {
+    fan: &'a Fan,
+    geometric: Vec3,
+}
+
+impl simd::Kernel for Above<'_> {
+    type Output = Kept;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> Kept {
+        let [x, y, z] = &self.fan.direction;
+        let mut is_kept = [false; FAN];
+        for (i, is_kept) in is_kept.iter_mut().enumerate() {
+            *is_kept = Vec3::new(x[i], y[i], z[i]).dot(self.geometric) > 0.0;
+        }
+        Kept::among(&is_kept, self.fan.size)
+    }
+}
+
 impl Sunflow {
     /// Indirect light on a matte surface of a colour.
-    pub(super) fn gather(&self, point: &Point<'_>, color: Vec3, shadows: &mut Shadows, queues: &mut Queues<Vec3>) {
+    pub(super) fn gather(&self, point: &Point<'_>, color: Vec3, room: &mut Room, queues: &mut Queues<Vec3>) {
         let depth = point.path.depth;
         if depth.diffuse >= self.max_diffuse {
             return;
@@ -69,7 +104,7 @@ impl Sunflow {
                 }
             }
             Indirect::Occlusion { dark, bright, samples, distance } => {
-                self.occlusion(point, [dark * color, bright * color], samples, distance, shadows, queues);
+                self.occlusion(point, [dark * color, bright * color], samples, distance, room, queues);
             }
             Indirect::Slope { up, sky, ground } => {
                 let cosine = up.dot(point.surface.normal);
@@ -87,7 +122,7 @@ impl Sunflow {
         [dark, bright]: [Vec3; 2],
         samples: u32,
         distance: f32,
-        shadows: &mut Shadows,
+        room: &mut Room,
         queues: &mut Queues<Vec3>,
     ) {
         self.emit(point, dark, queues);
@@ -96,16 +131,15 @@ impl Sunflow {
         if samples == 0 || endless && (self.background.is_some() || self.surroundings.is_some()) {
             return;
         }
-        let t_max = if endless { f32::INFINITY } else { distance };
-        let samples = point.count(samples);
-        let light = point.path.weight * (bright - dark) / samples as f32;
-        for i in 0..samples {
-            let xi = point.key.nth(i, samples).pair(point.dimension(Which::Gather));
-            let direction = math::cosine_hemisphere(point.surface.normal, xi);
+        // They are cheap, and twice as many make up for Sunflow's samples at the corners of pixels, which neighbours share.
+        let samples = point.count(samples.saturating_mul(2));
+        let sky = Sky { normal: point.surface.normal, distance: if endless { f32::MAX } else { distance } };
+        let (light, dimension) = (point.path.weight * (bright - dark), point.dimension(Which::Gather));
+        let Room { fan, shadows, .. } = room;
+        fan.spread(point.key, dimension, samples, &sky, light, &mut |fan| {
             // A ray into the surface itself meets it.
-            if direction.dot(point.surface.geometric) > 0.0 {
-                shadows.push(point.toward(direction, t_max), light, point.path.node);
-            }
-        }
+            let kept = simd::run(Above { fan, geometric: point.surface.geometric });
+            shadows.push_fan(fan, &kept, point);
+        });
     }
 }

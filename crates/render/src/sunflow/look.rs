@@ -2,9 +2,8 @@
 
 use glam::Vec3;
 
-use super::direct::Shadows;
 use super::point::Point;
-use super::{Batch, Queues, Sunflow};
+use super::{Batch, Queues, Room, Sunflow};
 use crate::options::Look;
 use crate::sampler;
 
@@ -18,7 +17,7 @@ impl Sunflow {
         batch: &Batch<'_>,
         point: &Point<'_>,
         look: Look,
-        shadows: &mut Shadows,
+        room: &mut Room,
         queues: &mut Queues<Vec3>,
     ) {
         match look {
@@ -34,7 +33,7 @@ impl Sunflow {
             }
             Look::Gray => {}
             Look::AmbientOcclusion => {
-                self.occlusion(point, [Vec3::ZERO, Vec3::ONE], OCCLUSION_SAMPLES, f32::INFINITY, shadows, queues);
+                self.occlusion(point, [Vec3::ZERO, Vec3::ONE], OCCLUSION_SAMPLES, f32::INFINITY, room, queues);
             }
         }
     }

@@ -45,7 +45,7 @@ impl VirtualLights {
                         self.add(light, lit, share as f32, &mut room.shadows);
                     }
                 }
-                room.flush(geometry, queues);
+                room.shadows.flush(geometry, queues, &mut room.scratch);
             }
         }
     }
