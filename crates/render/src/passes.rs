@@ -51,7 +51,7 @@ enum Choice {
     All,
     /// Those that differ from a neighbour, and those whose own samples differ, by this threshold.
     Edges(f32),
-    /// Those whose own samples differ.
+    /// Those whose own samples differ, and those that differ from such a neighbour.
     Uneven(f32),
 }
 
@@ -335,16 +335,20 @@ impl<'a, R: Rules> Job<'a, R> {
             Choice::Edges(threshold) => (true, threshold),
             Choice::Uneven(threshold) => (false, threshold),
         };
+        // The deviation of a pair that differs by the threshold t, |a − b| / (a + b) = t, is t.
+        let is_uneven = |spread: &Spread| spread.count > 1 && spread.deviation() > threshold;
         let choose = |tile: &Tile| {
             let [x0, y0, x1, y1] = tile.rect.meet(self.frame).0;
             let inner = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
             let chosen = inner.filter(|&(x, y)| {
                 let slot = tile.rect.index(x, y);
-                let spread = &tile.spreads[slot];
-                // The deviation of a pair that differs by the threshold t, |a − b| / (a + b) = t, is t.
-                let uneven = spread.count > 1 && spread.deviation() > threshold;
+                let uneven = is_uneven(&tile.spreads[slot]);
                 let neighbours = || self.neighbours(x, y).map(|(x, y)| self.pixel(tiles, x, y));
-                uneven || first && neighbours().any(|other| differ((tile, slot), other, threshold))
+                uneven
+                    || neighbours().any(|(other, at)| {
+                        // Later an edge next door may just cut a corner of this pixel, where no sample was yet.
+                        (first || is_uneven(&other.spreads[at])) && differ((tile, slot), (other, at), threshold)
+                    })
             });
             Active::Some(chosen.map(|(x, y)| tile.rect.index(x, y) as u32).collect())
         };

@@ -3,17 +3,39 @@
 //! Two-dimensional Sobol' points, shuffled and Owen-scrambled per pixel and dimension by hashing ([Burley 2020]
 //! "Practical Hash-based Owen Scrambling"; the hash is Vegdahl's improvement of Laine and Karras's).
 
-/// Where in the sample space a path stands: its pixel and its sample.
+/// Where in the sample space a path stands: a sequence of points, and the place in it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SampleKey {
-    /// Hash of the pixel and the seed.
+    /// Hash of the pixel, or of the block of pixels that share the sequence, and the seed.
     pub pixel: u32,
-    /// Index of the sample within the pixel.
+    /// Index of the sample in the sequence.
     pub index: u32,
 }
 
+/// Bits of an index that pixels of a block and their samples may take together; those that are left are for the parts
+/// into which a sample divides.
+const SHARED_BITS: u32 = 16;
+/// Blocks have at most 2 to this pixels along each side.
+const MOST_BLOCK_BITS: u32 = 5;
+
 impl SampleKey {
-    /// The key of sample `index` of a pixel.
+    /// The key of sample `index` of `of` of a pixel.
+    ///
+    /// A block of pixels shares one sequence, of which each takes a stretch, in the order of a Z-shaped curve: so the
+    /// samples of neighbours fill each other's gaps, and what the eye or a filter sees of several pixels has less noise
+    /// than any of them ([Ahmed, Wonka 2020] "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via
+    /// Hierarchical Ordering of Pixels"). Pixels of very many samples are on their own.
+    #[inline]
+    pub fn among(x: u32, y: u32, [index, of]: [u32; 2], seed: u64) -> Self {
+        let sample_bits = of.max(1).next_power_of_two().trailing_zeros();
+        let bits = (SHARED_BITS.saturating_sub(sample_bits) / 2).min(MOST_BLOCK_BITS);
+        let mask = (1 << bits) - 1;
+        let place = apart(x & mask) | apart(y & mask) << 1;
+        let block = SampleKey::new(x >> bits, y >> bits, 0, seed);
+        SampleKey { index: place.wrapping_mul(of).wrapping_add(index), ..block }
+    }
+
+    /// The key of sample `index` of a pixel that has a sequence of its own.
     #[inline(always)]
     pub fn new(x: u32, y: u32, index: u32, seed: u64) -> Self {
         let seed = hash(seed as u32 ^ hash((seed >> 32) as u32));
@@ -37,12 +59,30 @@ impl SampleKey {
         SampleKey { pixel: hash(seed as u32 ^ 0x5bf0_3635), index }
     }
 
+    /// Where in a pixel its sample `index` lies, if that is the same for all pixels: the sequence whose first four and
+    /// first sixteen points tell best how much of a pixel lies on either side of a straight edge, of 400,000 tried. (Their
+    /// root mean squared errors are 0.079 and 0.030; those of a mean sequence are 0.102 and 0.033.)
+    #[inline(always)]
+    pub fn pattern(index: u32) -> [f32; 2] {
+        sobol_pair(151_800, index)
+    }
+
     /// Two independent uniform numbers in [0, 1), without stratification.
     #[inline(always)]
     pub fn random_pair(&self, dimension: u32) -> [f32; 2] {
         let a = hash(self.pixel ^ hash(self.index ^ hash(dimension)));
         [unit(a), unit(hash(a ^ 0x68bc_21eb))]
     }
+}
+
+/// The lower 16 bits, with a zero before each.
+#[inline(always)]
+fn apart(bits: u32) -> u32 {
+    let mut v = bits & 0xffff;
+    v = (v | v << 8) & 0x00ff_00ff;
+    v = (v | v << 4) & 0x0f0f_0f0f;
+    v = (v | v << 2) & 0x3333_3333;
+    (v | v << 1) & 0x5555_5555
 }
 
 /// Point `index` of the scrambled sequence `seed`.
@@ -115,6 +155,25 @@ mod tests {
                 assert!(cells.iter().all(|&count| count == 1), "pixel {pixel}, {n} × {n}: {cells:?}");
             }
         }
+    }
+
+    #[test]
+    fn blocks_of_pixels_are_stratified_together() {
+        for (of, side) in [(1, 4), (1, 16), (4, 8), (16, 2), (256, 4)] {
+            let edge = (f64::from(of).sqrt() * f64::from(side)) as usize;
+            let mut cells = vec![0; edge * edge];
+            for (x, y) in (0..side).flat_map(|x| (0..side).map(move |y| (x + 3 * side, y + 5 * side))) {
+                for index in 0..of {
+                    let at = SampleKey::among(x, y, [index, of], 11).pair(3).map(|x| (x * edge as f32) as usize);
+                    cells[at[1] * edge + at[0]] += 1;
+                }
+            }
+            assert!(cells.iter().all(|&count| count == 1), "{of} samples, {side} × {side} pixels: {cells:?}");
+        }
+        // Each with so many samples that they are on their own.
+        let key = |x| SampleKey::among(x, 0, [7, 1 << 16], 0);
+        assert_ne!(key(0).pixel, key(1).pixel);
+        assert_eq!(key(0).index, 7);
     }
 
     #[test]

@@ -108,12 +108,12 @@ impl CompiledScene {
                 let moving = self.world.geometry.is_moving();
                 samples.rays.time.clear();
                 for (i, ([x, y], index)) in shots.iter().enumerate() {
-                    let key = SampleKey::new(x, y, index, seed);
+                    let key = SampleKey::among(x, y, [index, shots.of], seed);
                     // A single sample stands for the pixel's centre. Several lie alike in all pixels, so that edges
                     // come out smooth; with `jitter`, every pixel has its own.
                     let [dx, dy] = match (shots.of, jitter) {
                         (1, _) => [0.5; 2],
-                        (_, false) => SampleKey::shared(index, seed).pair(0),
+                        (_, false) => SampleKey::pattern(index),
                         (_, true) => key.pair(0),
                     };
                     let lens = if camera.has_aperture() { key.pair(1) } else { [0.5; 2] };
