@@ -2,21 +2,44 @@
 
 use std::path::Path;
 
-use jaspe_render::{CompileOptions, Film, RenderOptions, compile, render};
+use jaspe_render::{CompileOptions, Depth, Encoding, Film, Format, RenderOptions, compile, encode, render};
 use jaspe_scene::{MemoryLoader, parse};
 
 const SHADERS: &str = "shader { name red type constant 1 0 0 } shader { name green type constant 0 1 0 }
     shader { name blue type constant 0 0 1 }";
 
 fn film(camera: &str, balls: &str) -> Film {
+    film_with(&MemoryLoader::default(), camera, balls)
+}
+
+fn film_with(loader: &MemoryLoader, camera: &str, balls: &str) -> Film {
     let text =
         format!("image {{ resolution 64 64 aa 0 0 samples 64 filter box }} {SHADERS} camera {{ {camera} }} {balls}");
-    let loader = MemoryLoader::default();
-    let (scene, diagnostics) = parse(Path::new("view.sc"), text.as_bytes(), &loader);
+    let (scene, diagnostics) = parse(Path::new("view.sc"), text.as_bytes(), loader);
     assert!(diagnostics.is_empty(), "{diagnostics:?}");
-    let compiled = compile(&scene, &loader, &CompileOptions::default());
+    let compiled = compile(&scene, loader, &CompileOptions::default());
     let scene = compiled.scene.expect("no errors");
     render(&scene, &RenderOptions::default(), &()).expect("not cancelled").0
+}
+
+/// Without a light: a picture shines by itself, in its own linear colours, and lights what is near where light is traced on.
+#[test]
+fn a_texture_may_shine() {
+    let mut picture = Film::new(2, 2, Encoding::Display);
+    picture.pixels.fill([1.0, 128.0 / 255.0, 0.0, 1.0]);
+    let loader = MemoryLoader::default().with("embers.png", encode(&picture, Format::Png(Depth::Eight)).expect("PNG"));
+    let camera = "type pinhole eye 0 0 5 target 0 0 0 up 0 1 0 fov 40 aspect 1";
+    let balls =
+        "shader { name embers type constant texture embers.png } object { shader embers type sphere c 0 0 0 r 1 }
+        shader { name white type diffuse diff 1 1 1 } object { shader white type plane p 0 -1 0 n 0 1 0 }";
+    let shines = [1.0, jaspe_scene::srgb_decode(128.0 / 255.0) as f32, 0.0];
+    let alone = film_with(&loader, camera, balls);
+    sees(&alone, [32, 32], shines, 1.0);
+    sees(&alone, [32, 60], NOTHING, 1.0);
+    let lit = film_with(&loader, camera, &format!("gi {{ type path samples 16 }} {balls}"));
+    sees(&lit, [32, 32], shines, 1.0);
+    let floor = lit.pixels[60 * 64 + 32];
+    assert!(floor[0] > 0.05 && (floor[1] / floor[0] - shines[1]).abs() < 1e-3 && floor[2] == 0.0, "{floor:?}");
 }
 
 #[track_caller]

@@ -91,7 +91,7 @@ fn short(number: f32) -> f64 {
 /// The keywords of a shader beside its name and type, in the order that Sunflow insists on.
 pub(crate) fn entries(kind: &ShaderKind) -> Vec<(&'static str, Entry<'_>)> {
     match kind {
-        ShaderKind::Constant { color } => vec![("color", Entry::Color(color))],
+        ShaderKind::Constant { color } => vec![colored("color", color)],
         ShaderKind::Diffuse { diffuse } => vec![colored("diff", diffuse)],
         ShaderKind::Phong { diffuse, specular, power, samples } => vec![
             colored("diff", diffuse),

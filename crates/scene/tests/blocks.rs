@@ -77,8 +77,10 @@ fn shader(text: &str) -> ShaderKind {
 fn a_constant_may_leave_out_its_keyword() {
     for text in ["type constant 1 2 3", "type constant color 1 2 3", "type constant { \"sRGB linear\" 1 2 3 }"] {
         let ShaderKind::Constant { color } = shader(text) else { panic!("{text}") };
-        assert_eq!(color.linear(), [1.0, 2.0, 3.0]);
+        assert!(matches!(color, ColorOrTexture::Color(color) if color.linear() == [1.0, 2.0, 3.0]), "{text}");
     }
+    let ShaderKind::Constant { color } = shader("type constant texture embers.png") else { panic!("a texture") };
+    assert!(matches!(color, ColorOrTexture::Texture(name) if name.value == "embers.png"));
 }
 
 #[test]

@@ -70,7 +70,9 @@ fn plain_shaders_are_set_by_their_keywords() {
     let ShaderKind::Mirror { color } = kind(&changed("m.refl=0.5 0.5 0.5"), "m") else { panic!("mirror") };
     assert_eq!(color.linear(), [0.5; 3]);
     let ShaderKind::Constant { color } = kind(&changed("c.color=0 0 0"), "c") else { panic!("constant") };
-    assert_eq!(color.linear(), [0.0; 3]);
+    assert!(matches!(color, ColorOrTexture::Color(color) if color.linear() == [0.0; 3]));
+    let ShaderKind::Constant { color } = kind(&changed("c.texture=a.png"), "c") else { panic!("constant") };
+    assert!(matches!(color, ColorOrTexture::Texture(name) if name.value == "a.png"));
 }
 
 #[test]

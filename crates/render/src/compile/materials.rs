@@ -111,7 +111,7 @@ fn material(shader: &Shader, pictures: &mut Pictures<'_>, diagnostics: &mut Diag
     let plain = |color: &Color| Albedo::Color(working(color, dialect));
     let gloss = |color: &Color| Gloss::Color(working(color, dialect));
     let (albedo, response) = match &shader.kind {
-        ShaderKind::Constant { color } => (plain(color), Response::Constant),
+        ShaderKind::Constant { color } => (pictures.albedo(color, diagnostics), Response::Constant),
         ShaderKind::Diffuse { diffuse } => (pictures.albedo(diffuse, diagnostics), Response::Matte(Coat::None)),
         ShaderKind::Phong { diffuse, specular, power, samples } => {
             let coat = Coat::Phong { specular: gloss(specular), power: *power, samples: bounded(*samples) };

@@ -41,8 +41,8 @@ pub struct Blend {
 #[derive(Debug, Clone)]
 #[allow(missing_docs, reason = "the fields are the format's own words")]
 pub enum ShaderKind {
-    /// Shines by itself, the same in all directions (in the report's dialect: matte).
-    Constant { color: Color },
+    /// Shines by itself, the same in all directions (in the report's dialect: matte). A texture is ours: Sunflow's is of one colour.
+    Constant { color: ColorOrTexture },
     /// Matte.
     Diffuse { diffuse: ColorOrTexture },
     /// Matte with a glossy lobe of exponent `power`, `samples` rays into it.

@@ -118,7 +118,7 @@ fn find<'a>(parser: &mut Parser<'_>, scene: &Scene, path: &'a str) -> Option<(Ta
 /// How a shader is read, and a draft with its present values.
 fn open(kind: &ShaderKind) -> Option<(Type, Draft)> {
     let (name, draft) = match kind.clone() {
-        ShaderKind::Constant { color } => ("constant", Draft { color: Some(color), ..Draft::default() }),
+        ShaderKind::Constant { color } => ("constant", Draft { diffuse: Some(color), ..Draft::default() }),
         ShaderKind::Diffuse { diffuse } => ("diffuse", Draft { diffuse: Some(diffuse), ..Draft::default() }),
         ShaderKind::Phong { diffuse, specular, power, samples } => {
             let (diffuse, specular) = (Some(diffuse), Some((specular, power)));

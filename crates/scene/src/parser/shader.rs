@@ -99,7 +99,7 @@ pub(super) fn shader(parser: &mut Parser<'_>, head: Token) -> Parsed<()> {
     let place = parser.span(head);
     parser.require(&kind.value, &outcome, place, &shader.required());
     // Its colour may stand without a keyword, which `require` cannot see.
-    if kind.value == "constant" && draft.color.is_none() && !outcome.failed {
+    if kind.value == "constant" && draft.diffuse.is_none() && !outcome.failed {
         let diagnostic = Diagnostic::error(place, "`constant` lacks `color`").hint("add `color 1 1 1`");
         parser.diagnostics.push(diagnostic);
     }

@@ -68,7 +68,7 @@ pub(super) const TYPE: Key<Draft> = Key::new("type", "type diffuse", |p, d, _| {
     let kind = p.word("a shader type")?;
     // `type constant COLOR` is as good as `type constant color COLOR`.
     if kind.value == "constant" && p.color_follows() {
-        d.color = Some(p.color()?);
+        d.diffuse = Some(ColorOrTexture::Color(p.color()?));
     }
     Ok(())
 });
@@ -135,9 +135,9 @@ const DIFFUSE_REQUIRED: Required = (&["diff", "texture"], "diff 0.5 0.5 0.5");
 pub(super) const SHADERS: &[ShaderType] = &[
     ShaderType {
         name: "constant",
-        keys: &[NAME, TYPE, COLOR],
+        keys: &[NAME, TYPE, Key::new("color", "color 1 1 1", diffuse_color), TEXTURE],
         required: &[],
-        build: |d, _| Some(ShaderKind::Constant { color: d.color? }),
+        build: |d, _| Some(ShaderKind::Constant { color: d.diffuse? }),
     },
     ShaderType {
         name: "diffuse",

@@ -19,7 +19,7 @@ pub(super) fn shader(parser: &mut Parser<'_>, p: &mut Parameters, name: &Name, c
     let samples = |p: &mut Parameters, default: u32| p.whole("samples", 0, MOST_SAMPLES).unwrap_or(default);
     let specular = |p: &mut Parameters| p.color("specular").unwrap_or_else(|| gray(0.5));
     let kind = match textured.unwrap_or(&class.value) {
-        "constant" => ShaderKind::Constant { color: p.color("color").unwrap_or_else(|| gray(1.0)) },
+        "constant" => ShaderKind::Constant { color: diffuse(p, "color", 1.0) },
         "diffuse" => ShaderKind::Diffuse { diffuse: diffuse(p, "diffuse", 1.0) },
         "quick_gray" | "simple" => ShaderKind::Diffuse { diffuse: ColorOrTexture::Color(gray(0.5)) },
         "phong" => ShaderKind::Phong {
