@@ -1,6 +1,6 @@
 //! Every instruction set, every basis and sum, every length of a batch: the same bits.
 
-use jaspe_noise::simd::{Kernel, Level, map_at};
+use jaspe_noise::simd::{Kernel, Level, deinterleave_at, map_at};
 use jaspe_noise::{Basis, Cellular, Combine, Feature, Integer, Metric, Noise, Real, Sum, math};
 
 /// Points near and far, on lattice points and beside them, and no numbers at all.
@@ -229,4 +229,19 @@ fn levels_have_names_and_stay_within_the_machines() {
 #[should_panic(expected = "all slices have the same length")]
 fn slices_of_different_lengths_are_refused() {
     Noise::new(Basis::Improved, 0).fill([&[0.0; 3], &[0.0; 2]], &mut [0.0; 3]);
+}
+
+#[test]
+fn points_are_taken_apart_at_every_level() {
+    for count in (0..140).chain([1000]) {
+        let points: Vec<[f32; 3]> = (0..count).map(|i| [0.0, 0.25, 0.5].map(|part| i as f32 + part)).collect();
+        for level in Level::ALL {
+            let mut columns = [vec![-1.0; count], vec![-1.0; count], vec![-1.0; count]];
+            deinterleave_at(level, &points, columns.each_mut().map(Vec::as_mut_slice));
+            for (axis, column) in columns.iter().enumerate() {
+                let wrong = (0..count).find(|&i| column[i] != points[i][axis]);
+                assert_eq!(wrong, None, "{level:?}, axis {axis} of {count} points");
+            }
+        }
+    }
 }

@@ -1,13 +1,13 @@
 //! `jaspe.noise`: every noise and every sum over arrays of points.
 
 use jaspe_noise::{Basis, Cellular, Combine, Feature, Field, Metric, Recipe};
-use numpy::{Element, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArrayMethods as _};
+use numpy::{PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArrayMethods as _};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::unknown_word;
-use crate::points::{self, CHUNK, Points};
+use crate::points::{self, CHUNK, Coordinate, Points};
 
 /// The value of a noise, or of a sum over its octaves, at every point.
 ///
@@ -118,7 +118,7 @@ fn amounts(warp: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
 }
 
 /// A number in which noise is evaluated.
-trait Number: Element + Copy + Default {
+trait Number: Coordinate {
     /// The values at some points, and with `gradient` the derivatives along each axis.
     fn fill<const D: usize>(
         field: &Field,

@@ -13,11 +13,18 @@ use rayon::prelude::*;
 
 use crate::work;
 
-/// Points that are worked on at a time by one thread: their columns stay in the fastest caches.
-pub const CHUNK: usize = 2048;
+/// Points that are worked on at a time where their columns have to be made, or there is more than values: all of it stays in
+/// the first cache, and the next points arrive from memory meanwhile.
+pub const CHUNK: usize = 512;
+
+/// Points that are worked on at a time where their columns lie ready: what it takes to begin is spread over more of them.
+const LONG_CHUNK: usize = 4 * CHUNK;
+
+/// Points that a thread takes on at a time.
+const PIECE: usize = 4 * LONG_CHUNK;
 
 /// So few points are done before anybody presses Ctrl-C.
-const SHORT: usize = 64 * CHUNK;
+const SHORT: usize = 16 * PIECE;
 
 /// The coordinates of points along the last axis, in single or double precision.
 pub enum Points<'py> {
@@ -116,20 +123,47 @@ pub fn array_or_number<'py, T: Element>(array: Bound<'py, PyArrayDyn<T>>) -> PyR
     if array.ndim() == 0 { array.get_item(()) } else { Ok(array.into_any()) }
 }
 
-/// A chunk of the points, and where its results go.
+/// A coordinate of a point.
+pub trait Coordinate: Element + Copy + Default {
+    /// Takes points apart into columns of as many numbers.
+    fn deinterleave<const D: usize>(points: &[[Self; D]], columns: [&mut [Self]; D]) {
+        gather(points, columns);
+    }
+}
+
+/// One coordinate after the other.
+fn gather<T: Copy, const D: usize>(points: &[[T; D]], columns: [&mut [T]; D]) {
+    for (axis, column) in columns.into_iter().enumerate() {
+        column.iter_mut().zip(points).for_each(|(number, point)| *number = point[axis]);
+    }
+}
+
+impl Coordinate for f64 {}
+
+impl Coordinate for f32 {
+    fn deinterleave<const D: usize>(points: &[[f32; D]], mut columns: [&mut [f32]; D]) {
+        match &mut columns[..] {
+            [x, y, z] => jaspe_noise::simd::deinterleave(points.as_flattened().as_chunks().0, [x, y, z]),
+            _ => gather(points, columns),
+        }
+    }
+}
+
+/// What one thread does before it looks for more, and where the results go.
 struct Piece<'a, U> {
-    points: Range<usize>,
+    start: usize,
+    point_count: usize,
     values: &'a mut [U],
     more: &'a mut [U],
 }
 
 /// Evaluates `work` for all points: it is given columns of coordinates, and the results for them: `widths[0]` numbers for
-/// each point in `values`, and `widths[1]` in `more` (which is empty for none). On all cores and without the interpreter's
+/// each point in `values`, and `widths[1]` in `more` (which is empty for none; if not, there are [`CHUNK`] points at most). On all cores and without the interpreter's
 /// lock; Ctrl-C ends it. Which thread does which chunk leaves no trace.
 ///
 /// (Another thread of the program may write to the points meanwhile, as with any function of NumPy that releases the lock;
 /// it gets values of the old points or the new ones.)
-pub fn evaluate<T: Element + Copy + Default, U: Send, const D: usize>(
+pub fn evaluate<T: Coordinate, U: Send, const D: usize>(
     py: Python<'_>,
     points: ArrayViewD<'_, T>,
     values: &mut [U],
@@ -138,61 +172,60 @@ pub fn evaluate<T: Element + Copy + Default, U: Send, const D: usize>(
     work: impl Fn([&[T]; D], &mut [U], &mut [U]) + Sync,
 ) -> PyResult<()> {
     let rows = Rows::<T, D>::new(points);
-    let mut values = values.chunks_mut(CHUNK * widths[0]);
-    let mut more = more.chunks_mut((CHUNK * widths[1]).max(1));
-    let pieces = (0..rows.point_count).step_by(CHUNK).map(|start| Piece {
-        points: start..rows.point_count.min(start + CHUNK),
+    let [mut values, mut more] =
+        [(values, widths[0]), (more, widths[1])].map(|(all, width)| all.chunks_mut((PIECE * width).max(1)));
+    let pieces = (0..rows.point_count).step_by(PIECE).map(|start| Piece {
+        start,
+        point_count: PIECE.min(rows.point_count - start),
         values: values.next().unwrap_or_default(),
         more: more.next().unwrap_or_default(),
     });
-    let evaluate = |room: &mut Room<T, D>, piece: Piece<'_, U>| {
-        work(rows.columns(piece.points, room), piece.values, piece.more);
+    let chunk = if rows.dense.is_some() || widths[1] > 0 { CHUNK } else { LONG_CHUNK };
+    let evaluate = |piece: Piece<'_, U>| {
+        let mut room = [[T::default(); LONG_CHUNK]; D];
+        let mut values = piece.values.chunks_mut(chunk * widths[0]);
+        let mut more = piece.more.chunks_mut((chunk * widths[1]).max(1));
+        for start in (0..piece.point_count).step_by(chunk) {
+            let points = piece.start + start..piece.start + piece.point_count.min(start + chunk);
+            let columns = rows.columns(points, &mut room);
+            work(columns, values.next().unwrap_or_default(), more.next().unwrap_or_default());
+        }
     };
-    if rows.point_count <= CHUNK {
-        pieces.for_each(|piece| evaluate(&mut Room::default(), piece));
+    if rows.point_count <= PIECE {
+        pieces.for_each(evaluate);
         return Ok(());
     }
     let pool = work::pool()?;
     let pieces: Vec<Piece<'_, U>> = pieces.collect();
     if rows.point_count <= SHORT {
-        py.detach(|| pool.install(|| pieces.into_par_iter().for_each_init(Room::default, evaluate)));
+        py.detach(|| pool.install(|| pieces.into_par_iter().for_each(evaluate)));
         return py.check_signals();
     }
     work::watched(py, |stopped| {
-        let evaluate = |room: &mut Room<T, D>, piece: Piece<'_, U>| {
+        let evaluate = |piece: Piece<'_, U>| {
             if !stopped.load(Ordering::Relaxed) {
-                evaluate(room, piece);
+                evaluate(piece);
             }
         };
-        pool.install(|| pieces.into_par_iter().for_each_init(Room::default, evaluate));
+        pool.install(|| pieces.into_par_iter().for_each(evaluate));
     })
-}
-
-/// One thread's room for columns.
-struct Room<T, const D: usize>([Vec<T>; D]);
-
-impl<T: Copy + Default, const D: usize> Default for Room<T, D> {
-    fn default() -> Self {
-        Room(std::array::from_fn(|_| Vec::new()))
-    }
 }
 
 /// Points in rows, each of one stride, as long as they can be.
 struct Rows<'a, T, const D: usize> {
     view: ArrayViewD<'a, T>,
+    /// All of them, where they lie one after the other.
+    dense: Option<&'a [[T; D]]>,
     row_length: usize,
     point_count: usize,
 }
 
-impl<'a, T: Copy + Default, const D: usize> Rows<'a, T, D> {
+impl<'a, T: Coordinate, const D: usize> Rows<'a, T, D> {
     fn new(points: ArrayViewD<'a, T>) -> Self {
         let point_count = points.len() / D;
-        let is_standard = points.is_standard_layout() && point_count > 0;
-        let mut view = match points.to_slice().filter(|_| is_standard) {
-            Some(numbers) => ArrayView2::from_shape((point_count, D), numbers).expect("as many numbers").into_dyn(),
-            None if points.ndim() == 1 => points.insert_axis(Axis(0)),
-            None => points,
-        };
+        // (Points on a line are columns already.)
+        let dense = points.to_slice().filter(|_| D > 1).map(|numbers| numbers.as_chunks().0);
+        let mut view = if points.ndim() == 1 { points.insert_axis(Axis(0)) } else { points };
         // Axes that lie one after the other make longer rows.
         let inner = view.ndim() - 2;
         for axis in (0..inner).rev() {
@@ -201,7 +234,7 @@ impl<'a, T: Copy + Default, const D: usize> Rows<'a, T, D> {
             }
         }
         let row_length = view.shape()[view.ndim() - 2];
-        Rows { view, row_length, point_count }
+        Rows { view, dense, row_length, point_count }
     }
 
     fn row(&self, index: usize) -> ArrayView2<'a, T> {
@@ -217,46 +250,36 @@ impl<'a, T: Copy + Default, const D: usize> Rows<'a, T, D> {
     }
 
     /// The coordinates of some points, one slice for each axis: in place where they lie so.
-    fn columns<'r>(&'r self, points: Range<usize>, room: &'r mut Room<T, D>) -> [&'r [T]; D] {
+    fn columns<'r>(&'r self, points: Range<usize>, room: &'r mut [[T; LONG_CHUNK]; D]) -> [&'r [T]; D] {
+        let count = points.len();
+        if let Some(dense) = self.dense {
+            T::deinterleave(&dense[points], room.each_mut().map(|column| &mut column[..count]));
+            return room.each_ref().map(|column| &column[..count]);
+        }
         let row_of = |point: usize| (point / self.row_length, point % self.row_length);
         let (first, start) = row_of(points.start);
-        if start + points.len() <= self.row_length {
-            let part = self.part(first, start..start + points.len());
+        if start + count <= self.row_length {
+            let part = self.part(first, start..start + count);
             let columns: [Option<&[T]>; D] = std::array::from_fn(|axis| part.index_axis_move(Axis(1), axis).to_slice());
             if columns.iter().all(Option::is_some) {
                 return columns.map(Option::unwrap_or_default);
             }
         }
-        room.0.iter_mut().for_each(Vec::clear);
-        let mut point = points.start;
-        while point < points.end {
-            let (row, start) = row_of(point);
-            let end = self.row_length.min(start + points.end - point);
-            gather(self.part(row, start..end), room);
-            point += end - start;
+        let mut done = 0;
+        while done < count {
+            let (row, start) = row_of(points.start + done);
+            let end = self.row_length.min(start + count - done);
+            for (column, numbers) in room.iter_mut().zip(self.part(row, start..end).columns()) {
+                column[done..].iter_mut().zip(numbers).for_each(|(number, &found)| *number = found);
+            }
+            done += end - start;
         }
-        room.0.each_ref().map(Vec::as_slice)
+        room.each_ref().map(|column| &column[..count])
     }
 
     fn part(&self, row: usize, points: Range<usize>) -> ArrayView2<'a, T> {
         let mut row = self.row(row);
         row.slice_axis_inplace(Axis(0), Slice::from(points));
         row
-    }
-}
-
-/// Adds points to the columns.
-fn gather<T: Copy, const D: usize>(points: ArrayView2<'_, T>, room: &mut Room<T, D>) {
-    match points.to_slice() {
-        Some(numbers) => {
-            for (axis, column) in room.0.iter_mut().enumerate() {
-                column.extend(numbers.chunks_exact(D).map(|point| point[axis]));
-            }
-        }
-        None => {
-            for (column, numbers) in room.0.iter_mut().zip(points.columns()) {
-                column.extend(numbers.iter().copied());
-            }
-        }
     }
 }

@@ -13,11 +13,14 @@ mod avx512;
 mod pipeline;
 #[cfg(target_arch = "x86_64")]
 mod sse;
+mod triples;
 
 use std::sync::OnceLock;
 
 use crate::basis::Tables;
 use crate::number::{Integer, Real};
+
+pub use triples::{deinterleave, deinterleave_at};
 
 /// An evaluation of `D` inputs to one value.
 pub trait Kernel<const D: usize> {
