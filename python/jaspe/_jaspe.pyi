@@ -137,6 +137,19 @@ class Texture:
         preview: bool = False,
         progress: Progress = None,
     ) -> list[str]: ...
+    def preview(
+        self,
+        size: int = 1024,
+        *,
+        resolution: Union[int, tuple[int, int], None] = None,
+        tile: Optional[float] = None,
+        surface: _Surface = "plane",
+        mesh: Union[str, os.PathLike[str], None] = None,
+        frames: Optional[int] = None,
+        pace: int = 1,
+        frame: int = 0,
+        progress: Progress = None,
+    ) -> Image: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     def __eq__(self, other: object, /) -> bool: ...
     # <declared>

@@ -81,6 +81,38 @@ def test_arrays_are_those_of_the_files(tmp_path: Path) -> None:
     assert np.abs(texture.bake(64, ["color"])["color"] * 255 - bytes_of_file).max() <= 0.5001
 
 
+def test_the_preview_is_that_of_the_command_line(command: Callable[..., str], tmp_path: Path) -> None:
+    words = ["--size", 96, "--maps", "color", "--preview", "--quiet"]
+    command("bake", "organic", "--seed", 5, "-o", tmp_path / "theirs", *words)
+    theirs = (tmp_path / "theirs" / "preview.png").read_bytes()
+    texture = jaspe.Texture("organic", seed=5)
+    assert texture.preview(96)._repr_png_() == theirs
+    texture.bake_set(tmp_path / "ours", 96, ["color"], preview=True)
+    assert (tmp_path / "ours" / "preview.png").read_bytes() == theirs
+
+
+def test_previews_show_what_was_asked_for() -> None:
+    told: list[tuple[int, int]] = []
+
+    def preview(name: str, **options: Any) -> Any:
+        return np.asarray(jaspe.Texture(name).preview(128, resolution=(96, 60), **options)).astype(int)
+
+    ball = preview("marble", surface="sphere", progress=lambda done, total: told.append((done, total)))
+    assert ball.shape == (60, 96, 3) and told[-1][0] == told[-1][1]
+    assert not np.array_equal(ball, preview("marble"))
+    # Fire is seen at dusk, and lights the floor before it: there it is redder than under the sky.
+    fire, stone = preview("fire"), preview("stone")
+    floor = (slice(52, 59), slice(10, 40))
+    assert fire[floor].mean() < stone[floor].mean()
+    assert (fire[floor][..., 0] - fire[floor][..., 2]).mean() > 5 > (stone[floor][..., 0] - stone[floor][..., 2]).mean()
+    first, second = (preview("fire", frames=4, frame=frame) for frame in (0, 1))
+    assert not np.array_equal(first, second)
+    with pytest.raises(ValueError, match="frame: expected a number from 0 to 3"):
+        preview("fire", frames=4, frame=4)
+    with pytest.raises(ValueError, match="resolution: each side is from 1 to 16384"):
+        jaspe.Texture("fire").preview(64, resolution=(0, 5))
+
+
 def test_surfaces_have_their_own_shapes() -> None:
     assert jaspe.Texture("marble").bake(256, ["color"], surface="sphere")["color"].shape == (128, 256, 3)
     assert jaspe.Texture("marble").bake(256, ["height"], surface="cube")["height"].shape == (192, 256)

@@ -8,11 +8,9 @@ use serde_json::json;
 use crate::bake::{Bake, Settings};
 use crate::canvas::{Canvas, Ink, Style};
 use crate::map::Map;
-use crate::preview::{Silent, film, preview};
+use crate::preview::{PREVIEW_SIZE, Silent, film, preview};
 use crate::set::{GALLERY, SetError, SetFolder, Work, Written};
 
-/// The rendered picture of a page; the sheet shows it at half of this.
-const PREVIEW: [u32; 2] = [960, 600];
 /// The side of a map on a page.
 const TILE: usize = 304;
 /// Between things.
@@ -23,22 +21,26 @@ const PAPER: Ink = [250, 249, 246];
 const INK: Ink = [28, 28, 30];
 const FAINT: Ink = [110, 108, 104];
 
-/// Draws the gallery into a folder: `index.png`, the sheet; a page for each material, by its name; and `gallery.json`, which
-/// lists them.
+/// Draws these materials into a folder: `index.png`, the sheet; a page for each, by its name; and `gallery.json`, which lists
+/// them.
 ///
 /// # Errors
 /// [`SetError`]; then the folder is as it was before.
-pub fn write_gallery(folder: SetFolder, observer: &dyn Observer) -> Result<Written, SetError> {
-    let count = Texture::ALL.len() as u64;
+pub fn write_gallery(
+    materials: &[&'static Declaration],
+    folder: SetFolder,
+    observer: &dyn Observer,
+) -> Result<Written, SetError> {
+    let count = materials.len() as u64;
     let mut previews = Vec::new();
     let mut files = vec!["index.png".to_owned(), GALLERY.to_owned()];
-    for (k, declaration) in Texture::ALL.iter().enumerate() {
+    for (k, declaration) in materials.iter().enumerate() {
         let work = Work { observer, before: 100 * k as u64, most: 100, total: 100 * count };
         let texture = Texture::build(declaration.name, &[]).expect("defaults are within their ranges");
         let maps = Settings::maps_of(&texture);
         let bake = Bake::new(texture, Settings { size: 1024, maps, ..Settings::default() });
         let bake = bake.expect("a thousand pixels show every material");
-        let picture = preview(&bake, PREVIEW, &work)?;
+        let picture = preview(&bake, 0, PREVIEW_SIZE, &work)?;
         let name = format!("{}.png", declaration.name);
         folder.write(&name, &png(&page(&bake, &picture, observer)?))?;
         files.push(name);
@@ -46,7 +48,7 @@ pub fn write_gallery(folder: SetFolder, observer: &dyn Observer) -> Result<Writt
     }
     folder.write("index.png", &png(&sheet(&previews)))?;
     files.sort();
-    let names: Vec<&str> = Texture::ALL.iter().map(|declaration| declaration.name).collect();
+    let names: Vec<&str> = materials.iter().map(|declaration| declaration.name).collect();
     let list = json!({ "generator": concat!("jaspe ", env!("CARGO_PKG_VERSION")), "materials": names, "files": files });
     folder.write(GALLERY, format!("{list:#}\n").as_bytes())?;
     folder.complete()
@@ -74,9 +76,9 @@ fn page(bake: &Bake, picture: &Film, observer: &dyn Observer) -> Result<Canvas, 
     let declaration = bake.texture().declaration();
     let maps = Settings::maps_of(bake.texture());
     let rows = maps.len().div_ceil(3);
-    let width = PREVIEW[0] as usize + 2 * GAP;
+    let width = PREVIEW_SIZE[0] as usize + 2 * GAP;
     let map_row = TILE + LINE + GAP;
-    let top = GAP + 84 + PREVIEW[1] as usize + GAP;
+    let top = GAP + 84 + PREVIEW_SIZE[1] as usize + GAP;
     let below = top + rows * map_row;
     let height = below + declaration.parameters.len() * 2 * LINE + GAP;
     let mut canvas = Canvas::new([width, height], PAPER);
@@ -113,7 +115,7 @@ fn caption(map: Map, bake: &Bake) -> String {
 /// All materials, three in a row.
 fn sheet(materials: &[(&'static Declaration, Film)]) -> Canvas {
     let columns = 3;
-    let picture = PREVIEW.map(|side| side as usize / 2);
+    let picture = PREVIEW_SIZE.map(|side| side as usize / 2);
     let lines = materials.iter().map(|(declaration, _)| declaration.parameters.len()).max().unwrap_or(0);
     let cell = [picture[0] + GAP, picture[1] + 16 + 40 + 2 * LINE + 8 + lines * LINE + 2 * GAP];
     let rows = materials.len().div_ceil(columns);
@@ -205,6 +207,55 @@ mod tests {
         let half = half(&whole);
         assert_eq!((half.width, half.height), (2, 1));
         assert_eq!(half.pixels, [[2.5; 4], [4.5; 4]]);
+    }
+
+    /// Whether a line of text stands on a canvas, in this ink.
+    fn shows(canvas: &Canvas, text: &str, style: Style, ink: Ink) -> bool {
+        let mut line = Canvas::new([text.chars().count() * 20, 32], PAPER);
+        line.text([0, 0], text, style, ink);
+        let (whole, line) = (canvas.film(), line.film());
+        let row = |film: &Film, y: u32| film.pixels[(y * film.width) as usize..][..film.width as usize].to_vec();
+        // The part of the line that has ink, row by row.
+        let paper = line.pixels[line.pixels.len() - 1];
+        let inked: Vec<u32> = (0..line.height).filter(|&y| row(&line, y).iter().any(|&p| p != paper)).collect();
+        let (top, bottom) = (inked[0], inked[inked.len() - 1]);
+        let width = (0..line.width).rev().find(|&x| (top..=bottom).any(|y| row(&line, y)[x as usize] != paper));
+        let width = width.expect("it has ink") as usize + 1;
+        let pattern: Vec<Vec<[f32; 4]>> = (top..=bottom).map(|y| row(&line, y)[..width].to_vec()).collect();
+        (0..=whole.height - pattern.len() as u32).any(|y| {
+            let first = row(&whole, y);
+            first.windows(width).enumerate().filter(|(_, found)| *found == pattern[0]).any(|(x, _)| {
+                let below = pattern.iter().zip(y..);
+                below.skip(1).all(|(pattern, y)| row(&whole, y)[x..][..width] == pattern[..])
+            })
+        })
+    }
+
+    #[test]
+    fn the_sheet_and_the_pages_name_every_material_with_its_parameters() {
+        let film = || Film::new(PREVIEW_SIZE[0], PREVIEW_SIZE[1], jaspe_render::Encoding::Linear);
+        let all: Vec<_> = Texture::ALL.iter().map(|declaration| (*declaration, half(&film()))).collect();
+        let sheet = sheet(&all);
+        assert!(!shows(&sheet, "granite floor", Style::Text, INK));
+        for declaration in Texture::ALL {
+            let texture = Texture::build(declaration.name, &[]).expect("defaults");
+            let maps = Settings::maps_of(&texture);
+            let bake = Bake::new(texture, Settings { maps, ..Settings::default() }).expect("it can be baked");
+            let page = page(&bake, &film(), &()).expect("nobody stops it");
+            for (place, canvas) in [("sheet", &sheet), ("page", &page)] {
+                assert!(shows(canvas, declaration.name, Style::Title, INK), "{} on its {place}", declaration.name);
+                for parameter in declaration.parameters {
+                    let name = format!("{} of {} on its {place}", parameter.name, declaration.name);
+                    assert!(shows(canvas, parameter.name, Style::Text, INK), "{name}");
+                    if let Value::Int(default) = parameter.default {
+                        assert!(shows(canvas, &default.to_string(), Style::Text, INK), "{name}");
+                    }
+                }
+            }
+            for map in &bake.settings().maps {
+                assert!(shows(&page, &caption(*map, &bake), Style::Text, FAINT), "{map:?}");
+            }
+        }
     }
 
     #[test]

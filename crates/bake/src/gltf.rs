@@ -8,20 +8,39 @@ use crate::bake::Bake;
 use crate::encode::MapFormat;
 use crate::map::{Map, NormalConvention};
 use crate::model::Model;
-use crate::set::{SetOptions, file_name};
+use crate::set::{SetOptions, file_name, numbered};
 
-/// The files and their bytes; none where the maps are in a format that glTF cannot name.
-pub(crate) fn files(bake: &Bake, options: &SetOptions) -> Vec<(String, Vec<u8>)> {
+/// Whether there are such files: not where the maps are in a format that glTF cannot name.
+pub(crate) fn can_name(bake: &Bake, options: &SetOptions) -> bool {
     let nameable =
         |map: &Map| options.format_of(*map) != MapFormat::ExrHalf && options.format_of(*map) != MapFormat::ExrFloat;
-    if !bake.settings().maps.iter().filter(|&&map| map != Map::Height).all(nameable) {
+    bake.settings().maps.iter().filter(|&&map| map != Map::Height).all(nameable)
+}
+
+/// The files and their bytes. Each frame of a sequence is a material; the surface wears the first, and offers the others as
+/// variants (extension KHR_materials_variants).
+pub(crate) fn files(bake: &Bake, options: &SetOptions) -> Vec<(String, Vec<u8>)> {
+    if !can_name(bake, options) {
         return Vec::new();
     }
     let name = bake.texture().declaration().name;
     let model = bake.settings().surface.model(bake.tile());
-    let (buffer, views, accessors) = buffer(&model, bake.settings().normal);
+    let (buffer, views, accessors) = buffer(&model);
     let binary = format!("{name}.bin");
-    let (material, textures) = material(bake);
+    let (mut materials, mut images) = (Vec::new(), Vec::new());
+    for frame in 0..bake.frames() {
+        let (mut material, maps) = material(bake, images.len());
+        material["name"] = json!(numbered(bake, name, frame));
+        materials.push(material);
+        images.extend(maps.into_iter().map(|map| {
+            let uri = if map == Map::Normal {
+                green_up_file(bake, options, frame).unwrap_or_else(|| file_name(bake, options, map, frame))
+            } else {
+                file_name(bake, options, map, frame)
+            };
+            json!({ "name": numbered(bake, map.name(), frame), "uri": uri, "mimeType": options.format_of(map).mime_type() })
+        }));
+    }
     let mut json = json!({
         "asset": { "version": "2.0", "generator": concat!("jaspe ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
@@ -38,13 +57,18 @@ pub(crate) fn files(bake: &Bake, options: &SetOptions) -> Vec<(String, Vec<u8>)>
         "buffers": [{ "uri": binary, "byteLength": buffer.len() }],
         "bufferViews": views,
         "accessors": accessors,
-        "materials": [material],
+        "materials": materials,
     });
-    if !textures.is_empty() {
-        let images: Vec<Json> = textures
-            .iter()
-            .map(|map| json!({ "name": map.name(), "uri": file_name(bake, options, *map, 0), "mimeType": options.format_of(*map).mime_type() }))
-            .collect();
+    let mut extensions = Vec::new();
+    if bake.settings().animation.is_some() {
+        let variants = materials.iter().map(|material| json!({ "name": material["name"] }));
+        json["extensions"] = json!({ "KHR_materials_variants": { "variants": variants.collect::<Vec<_>>() } });
+        let mappings = (0..materials.len()).map(|frame| json!({ "material": frame, "variants": [frame] }));
+        json["meshes"][0]["primitives"][0]["extensions"] =
+            json!({ "KHR_materials_variants": { "mappings": mappings.collect::<Vec<_>>() } });
+        extensions.push("KHR_materials_variants");
+    }
+    if !images.is_empty() {
         let webp = options.format == MapFormat::WebP;
         let texture = |image: usize| match webp {
             true => json!({ "sampler": 0, "extensions": { "EXT_texture_webp": { "source": image } } }),
@@ -56,23 +80,30 @@ pub(crate) fn files(bake: &Bake, options: &SetOptions) -> Vec<(String, Vec<u8>)>
         let wrap = if bake.settings().surface.tiles() { 10497 } else { 33071 };
         json["samplers"] = json!([{ "magFilter": 9729, "minFilter": 9987, "wrapS": wrap, "wrapT": wrap }]);
         if webp {
-            json["extensionsUsed"] = json!(["EXT_texture_webp"]);
+            extensions.push("EXT_texture_webp");
             json["extensionsRequired"] = json!(["EXT_texture_webp"]);
         }
+    }
+    if !extensions.is_empty() {
+        json["extensionsUsed"] = json!(extensions);
     }
     vec![(format!("{name}.gltf"), format!("{json:#}\n").into_bytes()), (binary, buffer)]
 }
 
-/// The material, and the maps that its textures show, in their order.
-fn material(bake: &Bake) -> (Json, Vec<Map>) {
-    let mut textures = Vec::new();
-    let mut material = json!({
-        "name": bake.texture().declaration().name,
-        "pbrMetallicRoughness": { "metallicFactor": 0.0 },
-    });
+/// The normal map that glTF names where the set's own has green pointing down: in glTF it points up, and programs that make
+/// tangents of their own, as Blender does, cannot be told otherwise.
+pub(crate) fn green_up_file(bake: &Bake, options: &SetOptions, frame: u32) -> Option<String> {
+    let is_down = bake.settings().normal == NormalConvention::DirectX;
+    let wanted = is_down && bake.settings().maps.contains(&Map::Normal) && can_name(bake, options);
+    wanted.then(|| format!("{}.{}", numbered(bake, "normal.gl", frame), options.format_of(Map::Normal).extension()))
+}
+
+/// The material of a frame whose textures begin at this index, and the maps that they show, in their order.
+fn material(bake: &Bake, first: usize) -> (Json, Vec<Map>) {
+    let mut maps = Vec::new();
+    let mut material = json!({ "pbrMetallicRoughness": { "metallicFactor": 0.0 } });
     for &map in &bake.settings().maps {
-        let index = textures.len();
-        let texture = json!({ "index": index });
+        let texture = json!({ "index": first + maps.len() });
         match map {
             Map::Color => material["pbrMetallicRoughness"]["baseColorTexture"] = texture,
             // Green is the roughness, and blue the metalness, which the factor makes zero: a grey picture will do.
@@ -85,13 +116,13 @@ fn material(bake: &Bake) -> (Json, Vec<Map>) {
             }
             Map::Emission | Map::Height => continue,
         }
-        textures.push(map);
+        maps.push(map);
     }
-    (material, textures)
+    (material, maps)
 }
 
 /// The bytes of a model, and what describes them: indices, points, normals, tangents, texture coordinates.
-fn buffer(model: &Model, convention: NormalConvention) -> (Vec<u8>, Vec<Json>, Vec<Json>) {
+fn buffer(model: &Model) -> (Vec<u8>, Vec<Json>, Vec<Json>) {
     let (mut bytes, mut views, mut accessors) = (Vec::new(), Vec::new(), Vec::new());
     let mut view = |bytes: &mut Vec<u8>, data: Vec<u8>, target: u32| {
         views.push(json!({ "buffer": 0, "byteOffset": bytes.len(), "byteLength": data.len(), "target": target }));
@@ -111,19 +142,12 @@ fn buffer(model: &Model, convention: NormalConvention) -> (Vec<u8>, Vec<Json>, V
     let flat = |rows: &mut dyn Iterator<Item = Vec<f32>>| -> Vec<u8> {
         rows.flatten().flat_map(|number| number.to_le_bytes()).collect()
     };
-    // Green down is green up seen with the other hand.
-    let hand = if convention == NormalConvention::OpenGl { 1.0 } else { -1.0 };
     let single = |v: [f64; 3]| v.map(|part| part as f32).to_vec();
     let rows: [(Vec<u8>, &str); 4] = [
         (flat(&mut points.iter().map(|point| point.to_vec())), "VEC3"),
         (flat(&mut model.vertices.iter().map(|vertex| single(vertex.normal))), "VEC3"),
         (
-            flat(
-                &mut model
-                    .vertices
-                    .iter()
-                    .map(|vertex| [single(vertex.tangent), vec![hand * vertex.hand as f32]].concat()),
-            ),
+            flat(&mut model.vertices.iter().map(|vertex| [single(vertex.tangent), vec![vertex.hand as f32]].concat())),
             "VEC4",
         ),
         // The picture's first row is at the top, where v is 1.

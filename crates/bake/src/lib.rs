@@ -48,6 +48,6 @@ pub use encode::MapFormat;
 pub use gallery::write_gallery;
 pub use map::{ColorSpace, Map, MapDeclaration, NormalConvention};
 pub use model::{Model, ModelError};
-pub use preview::preview;
+pub use preview::{PREVIEW_SIZE, preview};
 pub use set::{Preview, SetError, SetFolder, SetOptions, Written, write_set};
 pub use surface::Surface;

@@ -12,35 +12,63 @@ use jaspe_scene::{MemoryLoader, parse};
 use crate::bake::{Arrays, Bake, Settings};
 use crate::map::{Map, NormalConvention};
 use crate::model::Model;
+use crate::set::Work;
 use crate::surface::sheet;
+
+/// Pixels of a preview, unless something else is asked for.
+pub const PREVIEW_SIZE: [u32; 2] = [960, 600];
 
 /// The longest side of the maps that a preview wears.
 const MAPS: u32 = 1024;
 
-/// The preview of a bake, in pixels.
+/// How much of the day is left where something glows.
+const DUSK: f32 = 0.3;
+
+/// The preview of a frame of a bake (0 where there is one only), in pixels. What glows is seen at dusk, and lights the floor.
 ///
 /// # Errors
 /// [`Cancelled`] when the observer asked for it.
-pub fn preview(bake: &Bake, [width, height]: [u32; 2], observer: &dyn Observer) -> Result<Film, Cancelled> {
+pub fn preview(bake: &Bake, frame: u32, size: [u32; 2], observer: &dyn Observer) -> Result<Film, Cancelled> {
+    let glows = bake.texture().finish().emission > 0.0;
     let with = |size: u32| {
-        let maps = vec![Map::Color, Map::Normal, Map::Roughness];
-        let settings = Settings { size, maps, normal: NormalConvention::OpenGl, ..bake.settings().clone() };
+        let maps = Map::ALL.iter().copied().filter(|&map| match map {
+            Map::Color | Map::Normal | Map::Roughness => true,
+            Map::Emission => glows,
+            Map::Height | Map::Occlusion => false,
+        });
+        let settings =
+            Settings { size, maps: maps.collect(), normal: NormalConvention::OpenGl, ..bake.settings().clone() };
         Bake::new(bake.texture().clone(), settings)
     };
     // (Smaller maps may be too coarse for the material.)
     let small = with(bake.settings().size.min(MAPS)).or_else(|_| with(bake.settings().size));
     let small = small.expect("what could be baked can be baked with these maps");
-    let arrays = small.arrays(0, &Silent(observer))?;
-    let loader = MemoryLoader::default()
-        .with("color.png", png(&film(&arrays, Map::Color)))
-        .with("normal.png", png(&film(&arrays, Map::Normal)));
-    let text = scene(&small, mean(&arrays, Map::Roughness), [width, height]);
-    let (scene, diagnostics) = parse("preview.sc".as_ref(), text.as_bytes(), &loader);
-    debug_assert!(diagnostics.is_empty(), "{diagnostics:?}");
-    let compiled = compile(&scene, &loader, &CompileOptions::default()).scene;
-    let compiled = compiled.expect("the scene of the preview has no mistakes");
-    let options = RenderOptions { threads: Some(rayon::current_num_threads()), ..RenderOptions::default() };
-    Ok(render(&compiled, &options, observer)?.0)
+    let arrays = small.arrays(frame, &Silent(observer))?;
+    let mut loader = MemoryLoader::default();
+    for array in &arrays.maps {
+        loader = loader.with(format!("{}.png", array.map.name()), png(&film(&arrays, array.map)));
+    }
+    let render = |lit: &str, most: [u64; 2]| {
+        let text = scene(&small, size, lit);
+        let (scene, diagnostics) = parse("preview.sc".as_ref(), text.as_bytes(), &loader);
+        debug_assert!(diagnostics.is_empty(), "{diagnostics:?}");
+        let compiled = compile(&scene, &loader, &CompileOptions::default()).scene;
+        let compiled = compiled.expect("the scene of the preview has no mistakes");
+        let options = RenderOptions { threads: Some(rayon::current_num_threads()), ..RenderOptions::default() };
+        let [before, most] = most;
+        Ok(render(&compiled, &options, &Work { observer, before, most, total: 100 })?.0)
+    };
+    let day = by_day(mean(&arrays, Map::Roughness));
+    if !glows {
+        return render(&day, [0, 100]);
+    }
+    // Light adds up: that of the sky, and that of the surface itself.
+    let mut sum = render(&day, [0, 50])?;
+    let glow = render(BY_NIGHT, [50, 50])?;
+    for (pixel, glow) in sum.pixels.iter_mut().zip(&glow.pixels) {
+        pixel.iter_mut().zip(glow).take(3).for_each(|(light, glow)| *light = DUSK * *light + glow);
+    }
+    Ok(sum)
 }
 
 /// Stops as another observer does, and tells it nothing.
@@ -75,25 +103,33 @@ fn mean(arrays: &Arrays, map: Map) -> f64 {
     })
 }
 
-/// The scene: a plane is worn by a ball and a cloth, any other surface by itself.
-fn scene(bake: &Bake, roughness: f64, [width, height]: [u32; 2]) -> String {
+/// Sun and sky, and the material as they show it.
+fn by_day(roughness: f64) -> String {
     let shader = if roughness < 0.25 {
-        "shader { name material type shiny texture color.png refl 0.06 }".to_owned()
+        "shiny texture color.png refl 0.06".to_owned()
     } else {
         // GGX's α is the square of the roughness, and Ward's width is close to it.
         let spread = (roughness * roughness).clamp(0.05, 0.6);
-        format!(
-            "shader {{ name material type ward texture color.png spec 0.04 0.04 0.04 rough {spread} {spread} samples 1 }}"
-        )
+        format!("ward texture color.png spec 0.04 0.04 0.04 rough {spread} {spread} samples 1")
     };
+    format!(
+        "light {{ type sunsky up 0 0 1 east 0 1 0 sundir -0.65 -0.7 0.85 turbidity 3 samples 10 }}\n\
+         shader {{ name material type {shader} }}\n"
+    )
+}
+
+/// No light but the material's own.
+const BY_NIGHT: &str = "gi { type path samples 8 }\nshader { name material type constant texture emission.png }\n";
+
+/// The scene: a plane is worn by a ball and a cloth, any other surface by itself.
+fn scene(bake: &Bake, [width, height]: [u32; 2], light_and_material: &str) -> String {
     let mut text = format!(
         "image {{ resolution {width} {height} aa 1 2 filter mitchell }}\n\
          trace-depths {{ diff 1 refl 3 refr 2 }}\n\
          camera {{ type pinhole eye 0 -8.2 2.6 target 0.1 0 1.12 up 0 0 1 fov 38 aspect {} }}\n\
-         light {{ type sunsky up 0 0 1 east 0 1 0 sundir -0.65 -0.7 0.85 turbidity 3 samples 10 }}\n\
          modifier {{ name relief type normalmap texture normal.png }}\n\
          shader {{ name floor type diffuse diff {{ \"sRGB nonlinear\" 0.58 0.56 0.53 }} }}\n\
-         object {{ shader floor type plane p 0 0 0 n 0 0 1 }}\n{shader}\n",
+         object {{ shader floor type plane p 0 0 0 n 0 0 1 }}\n{light_and_material}",
         f64::from(width) / f64::from(height)
     );
     if bake.settings().surface.tiles() {

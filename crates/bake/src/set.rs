@@ -212,10 +212,14 @@ fn check_replaceable(folder: &Path, entries: fs::ReadDir) -> Result<(), SetError
 
 /// The name of a map's file; frames are numbered if there are several.
 pub(crate) fn file_name(bake: &Bake, options: &SetOptions, map: Map, frame: u32) -> String {
-    let extension = options.format_of(map).extension();
+    format!("{}.{}", numbered(bake, map.name(), frame), options.format_of(map).extension())
+}
+
+/// A name, with the number of the frame if there are several.
+pub(crate) fn numbered(bake: &Bake, name: &str, frame: u32) -> String {
     match bake.settings().animation {
-        None => format!("{}.{extension}", map.name()),
-        Some(Loop { first, .. }) => format!("{}.{:04}.{extension}", map.name(), first + frame),
+        None => name.to_owned(),
+        Some(Loop { first, .. }) => format!("{name}.{:04}", first + frame),
     }
 }
 
@@ -270,7 +274,7 @@ pub fn write_set(
         write_frame(bake, options, &folder, frame, height_range, &observer)?;
     }
     if let Preview::Rendered(size) = options.preview {
-        let film = preview(bake, size, &work(total - preview_work, preview_work))?;
+        let film = preview(bake, 0, size, &work(total - preview_work, preview_work))?;
         let (name, format) = match options.format {
             MapFormat::Jpeg => ("preview.jpg", Format::Jpeg),
             _ => ("preview.png", Format::Png(Depth::Eight)),
@@ -304,20 +308,37 @@ fn write_frame(
     struct Open {
         path: PathBuf,
         writer: Box<dyn MapWriter>,
+        /// Which of the maps, and whether its green is turned over.
+        source: usize,
+        flipped: bool,
+    }
+    let maps = &bake.settings().maps;
+    let mut files: Vec<(String, usize, bool)> =
+        maps.iter().enumerate().map(|(i, &map)| (file_name(bake, options, map, frame), i, false)).collect();
+    if let Some(name) = gltf::green_up_file(bake, options, frame) {
+        files.extend(maps.iter().position(|&map| map == Map::Normal).map(|i| (name, i, true)));
     }
     let mut open = Vec::new();
-    for &map in &bake.settings().maps {
-        let name = file_name(bake, options, map, frame);
-        let path = folder.named(&name);
+    for (name, source, flipped) in files {
+        let (path, map) = (folder.named(&name), maps[source]);
         let writer = writer(folder.create(&name)?, map, options.format_of(map), [bake.width(), bake.height()]);
-        open.push(Open { writer: writer.map_err(|error| SetError::Write { path: path.clone(), error })?, path });
+        let writer = writer.map_err(|error| SetError::Write { path: path.clone(), error })?;
+        open.push(Open { path, writer, source, flipped });
     }
     bake.bands::<SetError>(frame, height_range, observer, |band| {
-        let files = open.par_iter_mut().zip(&band.maps);
-        files.try_for_each(|(file, rows)| {
-            file.writer.rows(rows).map_err(|error| SetError::Write { path: file.path.clone(), error })
+        open.par_iter_mut().try_for_each(|file| {
+            let rows = &band.maps[file.source];
+            let written = if file.flipped { file.writer.rows(&green_flipped(rows)) } else { file.writer.rows(rows) };
+            written.map_err(|error| SetError::Write { path: file.path.clone(), error })
         })
     })?;
     let finish = |file: Open| file.writer.finish().map_err(|error| SetError::Write { path: file.path, error });
     open.into_par_iter().try_for_each(finish)
+}
+
+/// Normals of the other convention.
+fn green_flipped(rows: &[f32]) -> Vec<f32> {
+    let mut rows = rows.to_vec();
+    rows.chunks_exact_mut(3).for_each(|normal| normal[1] = 1.0 - normal[1]);
+    rows
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use jaspe_bake::{
     Bake, ColorSpace, Loop, Map, MapFormat, NormalConvention, SetError, SetFolder, SetOptions, Settings, Surface,
-    Written, write_set,
+    Written, write_gallery, write_set,
 };
 use jaspe_render::{Observer, srgb_decode};
 use jaspe_texture::Texture;
@@ -183,6 +183,7 @@ fn other_programs_find_the_maps() {
 /// The crate validates by the rules of the specification: indices, ranges, required members.
 fn check_gltf(path: &Path, normal: NormalConvention, repeats: bool) {
     let gltf = gltf::Gltf::from_slice(&fs::read(path).unwrap()).unwrap();
+    assert_eq!(gltf.materials().len(), 1);
     let buffer = fs::read(path.with_extension("bin")).unwrap();
     assert_eq!(gltf.buffers().next().unwrap().length(), buffer.len());
     let material = gltf.materials().next().unwrap();
@@ -199,7 +200,15 @@ fn check_gltf(path: &Path, normal: NormalConvention, repeats: bool) {
     };
     assert_eq!(file(pbr.base_color_texture().unwrap().texture()), "color.png");
     assert_eq!(file(pbr.metallic_roughness_texture().unwrap().texture()), "roughness.png");
-    assert_eq!(file(material.normal_texture().unwrap().texture()), "normal.png");
+    // Green points up in glTF, whatever the set's own map has.
+    let names = if normal == NormalConvention::OpenGl { "normal.png" } else { "normal.gl.png" };
+    assert_eq!(file(material.normal_texture().unwrap().texture()), names);
+    if normal == NormalConvention::DirectX {
+        let (down, up) = (decoded_any(&path.with_file_name("normal.png")), decoded_any(&path.with_file_name(names)));
+        for (down, up) in down.pixels().zip(up.pixels()) {
+            assert!((down[0], down[2]) == (up[0], up[2]) && down[1].abs_diff(255 - up[1]) <= 1);
+        }
+    }
     assert_eq!(file(material.occlusion_texture().unwrap().texture()), "ao.png");
     assert_eq!(file(material.emissive_texture().unwrap().texture()), "emission.png");
     assert_eq!((pbr.metallic_factor(), material.emissive_factor()), (0.0, [1.0; 3]));
@@ -223,8 +232,7 @@ fn check_gltf(path: &Path, normal: NormalConvention, repeats: bool) {
         for i in [a, b, c] {
             let tangent = [tangents[i][0], tangents[i][1], tangents[i][2]];
             assert!((dot(tangent, tangent) - 1.0).abs() < 1e-5 && dot(tangent, normals[i]).abs() < 1e-5);
-            let up = if normal == NormalConvention::OpenGl { 1.0 } else { -1.0 };
-            assert_eq!(tangents[i][3], up);
+            assert_eq!(tangents[i][3], 1.0);
             // Triangles are seen from outside, where their normals point.
             assert!(dot(face, normals[i]) >= -1e-6);
         }
@@ -234,6 +242,53 @@ fn check_gltf(path: &Path, normal: NormalConvention, repeats: bool) {
             (uvs[to][0] - uvs[from][0]) * dot(minus(points[to], points[from]), tangent) >= -1e-6
         };
         assert!(grows(a, b) && grows(b, c));
+    }
+}
+
+fn decoded_any(path: &Path) -> image::RgbImage {
+    image::open(path).unwrap().into_rgb8()
+}
+
+#[test]
+fn frames_are_variants_of_the_material() {
+    let here = tempfile::tempdir().unwrap();
+    for (normal, normals) in [(NormalConvention::OpenGl, "normal"), (NormalConvention::DirectX, "normal.gl")] {
+        let folder = here.path().join(normals);
+        let animation = Some(Loop { frames: 3, first: 7, cells: 1 });
+        write(&bake_with("fire", Settings { animation, normal, ..settings() }), MapFormat::Png8, &folder).unwrap();
+        let path = folder.join("fire.gltf");
+        let gltf = gltf::Gltf::from_slice(&fs::read(&path).unwrap()).unwrap();
+        let frames = ["0007", "0008", "0009"];
+        let names: Vec<String> = gltf.materials().map(|material| material.name().unwrap().to_owned()).collect();
+        assert_eq!(names, frames.map(|frame| format!("fire.{frame}")));
+        for (material, frame) in gltf.materials().zip(frames) {
+            let pbr = material.pbr_metallic_roughness();
+            let textures = [
+                (pbr.base_color_texture().unwrap().texture(), "color"),
+                (pbr.metallic_roughness_texture().unwrap().texture(), "roughness"),
+                (material.normal_texture().unwrap().texture(), normals),
+                (material.occlusion_texture().unwrap().texture(), "ao"),
+                (material.emissive_texture().unwrap().texture(), "emission"),
+            ];
+            for (texture, map) in textures {
+                let gltf::image::Source::Uri { uri, .. } = texture.source().source() else { panic!("beside it") };
+                assert_eq!(uri, format!("{map}.{frame}.png"));
+                assert!(folder.join(uri).exists(), "{uri}");
+            }
+        }
+        let json = json(&path);
+        assert_eq!(json["extensionsUsed"], serde_json::json!(["KHR_materials_variants"]));
+        let variants = &json["extensions"]["KHR_materials_variants"]["variants"];
+        assert_eq!(
+            *variants,
+            serde_json::json!([{ "name": "fire.0007" }, { "name": "fire.0008" }, { "name": "fire.0009" }])
+        );
+        let primitive = &json["meshes"][0]["primitives"][0];
+        assert_eq!(primitive["material"], 0);
+        let mappings = serde_json::json!([
+            { "material": 0, "variants": [0] }, { "material": 1, "variants": [1] }, { "material": 2, "variants": [2] }
+        ]);
+        assert_eq!(primitive["extensions"]["KHR_materials_variants"]["mappings"], mappings);
     }
 }
 
@@ -269,12 +324,13 @@ fn check_materialx(path: &Path, normal: NormalConvention) {
     assert_eq!(text.contains("1, -1, 1"), normal == NormalConvention::DirectX);
 }
 
-/// Looks, and stops after some looks.
+/// Looks, and from some look on wants it stopped.
 struct Impatient(AtomicU32);
 
 impl Observer for Impatient {
     fn cancelled(&self) -> bool {
-        self.0.fetch_sub(1, Ordering::Relaxed) == 1
+        let less = |looks: u32| Some(looks.saturating_sub(1));
+        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less).is_ok_and(|looks| looks <= 1)
     }
 }
 
@@ -286,6 +342,17 @@ fn a_stopped_bake_leaves_nothing() {
         let folder = here.path().join("set");
         let target = SetFolder::new(&folder).unwrap();
         let result = write_set(&bake, &SetOptions::new(MapFormat::Png8), target, &Impatient(AtomicU32::new(looks)));
+        assert!(matches!(result, Err(SetError::Cancelled)), "{looks}: {result:?}");
+        assert_eq!(names(here.path()), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn a_stopped_gallery_leaves_nothing() {
+    let here = tempfile::tempdir().unwrap();
+    for looks in [1, 40, 74] {
+        let target = SetFolder::new(&here.path().join("gallery")).unwrap();
+        let result = write_gallery(Texture::ALL, target, &Impatient(AtomicU32::new(looks)));
         assert!(matches!(result, Err(SetError::Cancelled)), "{looks}: {result:?}");
         assert_eq!(names(here.path()), Vec::<String>::new());
     }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use jaspe_bake::{
-    Bake, BakeError, Loop, Map, MapFormat, Model, NormalConvention, Preview, SetError, SetFolder, SetOptions, Settings,
-    Surface, write_set,
+    Bake, BakeError, Loop, Map, MapFormat, Model, NormalConvention, PREVIEW_SIZE, Preview, SetError, SetFolder,
+    SetOptions, Settings, Surface, write_set,
 };
 use jaspe_edge::plain;
 use jaspe_texture::Texture;
@@ -16,6 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{unknown_word, value_error};
+use crate::image::Image;
 use crate::work::{self, Watch, interruptible};
 
 /// What is baked, as users say it.
@@ -63,10 +64,7 @@ pub fn arrays<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let bake = wanted.bake(texture)?;
-    if frame >= bake.frames() {
-        let last = bake.frames() - 1;
-        return Err(value_error(format!("frame: expected a number from 0 to {last}, found {frame}")));
-    }
+    check_frame(&bake, frame)?;
     let tile = bake.tile();
     let arrays = followed(py, progress, move |watch| bake.arrays(frame, watch))?;
     let arrays = arrays.map_err(|_| PyRuntimeError::new_err("the bake was stopped"))?;
@@ -83,6 +81,29 @@ pub fn arrays<'py>(
     let class = py.import(intern!(py, "jaspe._maps"))?.getattr(intern!(py, "Maps"))?;
     let [low, high] = arrays.height_range;
     class.call1((maps, tile, (low, high)))
+}
+
+/// The picture of a set on a ball and a cloth.
+pub fn preview(
+    py: Python<'_>,
+    texture: Texture,
+    wanted: Wanted,
+    frame: u32,
+    resolution: [u32; 2],
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Image> {
+    let bake = wanted.bake(texture)?;
+    check_frame(&bake, frame)?;
+    let film = followed(py, progress, move |watch| jaspe_bake::preview(&bake, frame, resolution, watch))?;
+    Ok(Image::new(film.map_err(|_| PyRuntimeError::new_err("the preview was stopped"))?, Vec::new()))
+}
+
+fn check_frame(bake: &Bake, frame: u32) -> PyResult<()> {
+    if frame < bake.frames() {
+        return Ok(());
+    }
+    let last = bake.frames() - 1;
+    Err(value_error(format!("frame: expected a number from 0 to {last}, found {frame}")))
 }
 
 /// Bakes a set of files into a folder, and returns their names.
@@ -141,9 +162,6 @@ pub fn set_options(format: &str, bits: Option<u32>, preview: bool) -> PyResult<S
     }
     Ok(options)
 }
-
-/// Pixels of a preview.
-const PREVIEW_SIZE: [u32; 2] = [960, 600];
 
 fn unwritable(error: SetError) -> PyErr {
     match error {

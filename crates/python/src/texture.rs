@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use jaspe_bake::Loop;
+use jaspe_bake::{Loop, PREVIEW_SIZE};
 use jaspe_render::swatch;
 use jaspe_texture::declare::{Declaration, Kind, Parameter, Value};
 use jaspe_texture::{BuildError, Space, Texture as Material};
@@ -141,7 +141,7 @@ impl Texture {
     /// appears `scale` times as large.
     #[pyo3(signature = (size = None, scale = 1.0))]
     fn image(&self, py: Python<'_>, size: Option<&Bound<'_, PyAny>>, scale: f64) -> PyResult<Image> {
-        let size = size.map_or(Ok([512; 2]), sides)?;
+        let size = size.map_or(Ok([512; 2]), |size| sides("size", size))?;
         if !(1e-6..=1e6).contains(&scale) {
             return Err(value_error(format!("scale: expected a number from 0.000001 to 1000000, found {scale}")));
         }
@@ -220,6 +220,35 @@ impl Texture {
         bake::set(py, self.material(), wanted, folder, options, progress)
     }
 
+    /// Renders a baked set as it looks: the material on a ball and a cloth under a sky, or on the `surface` or the `mesh` that was
+    /// baked. `Texture("stone").preview()` is the `preview.png` of `jaspe bake stone --preview`, to the bit.
+    ///
+    /// `size` is the width of the maps, and `resolution` that of the picture, (width, height). The rest is as for `bake`.
+    #[pyo3(signature = (
+        size = 1024, *, resolution = None, tile = None, surface = "plane", mesh = None, frames = None, pace = 1, frame = 0,
+        progress = None
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "they are named where this is called")]
+    fn preview(
+        &self,
+        py: Python<'_>,
+        size: u32,
+        resolution: Option<&Bound<'_, PyAny>>,
+        tile: Option<f64>,
+        surface: &str,
+        mesh: Option<PathBuf>,
+        frames: Option<u32>,
+        pace: u32,
+        frame: u32,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Image> {
+        let resolution = resolution.map_or(Ok(PREVIEW_SIZE), |size| sides("resolution", size))?;
+        let (surface, normal) = (surface.to_owned(), "gl".to_owned());
+        let animation = frames.map(|frames| Loop { frames, first: 0, cells: pace });
+        let wanted = Wanted { size, maps: None, tile, surface, mesh, normal, animation };
+        bake::preview(py, self.material(), wanted, frame, resolution, progress)
+    }
+
     fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
         other.cast::<Texture>().is_ok_and(|other| self.material() == other.get().material())
     }
@@ -284,12 +313,13 @@ fn points_of<'py>(material: &Material, points: &Bound<'py, PyAny>) -> PyResult<P
     }
 }
 
-/// A size in pixels, from one number for both sides or from (width, height).
-pub fn sides(size: &Bound<'_, PyAny>) -> PyResult<[u32; 2]> {
+/// A size in pixels, from one number for both sides or from (width, height); `parameter` is what it was given as.
+fn sides(parameter: &str, size: &Bound<'_, PyAny>) -> PyResult<[u32; 2]> {
     let sides = size.extract::<i128>().map(|side| [side; 2]).or_else(|_| size.extract::<[i128; 2]>());
-    let sides = sides.map_err(|_| PyTypeError::new_err("size: expected a number of pixels, or (width, height)"))?;
+    let sides = sides
+        .map_err(|_| PyTypeError::new_err(format!("{parameter}: expected a number of pixels, or (width, height)")))?;
     match sides.iter().find(|side| !(1..=16_384).contains(*side)) {
-        Some(side) => Err(value_error(format!("size: each side is from 1 to 16384 pixels, found {side}"))),
+        Some(side) => Err(value_error(format!("{parameter}: each side is from 1 to 16384 pixels, found {side}"))),
         None => Ok(sides.map(|side| side as u32)),
     }
 }

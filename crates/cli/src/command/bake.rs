@@ -7,8 +7,8 @@ use std::time::Instant;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use jaspe_bake::{
-    BakeError, Loop, Map, MapFormat, Model, NormalConvention, Preview, SetError, SetFolder, SetOptions, Settings,
-    Surface, Written, write_set,
+    BakeError, Loop, Map, MapFormat, Model, NormalConvention, PREVIEW_SIZE, Preview, SetError, SetFolder, SetOptions,
+    Settings, Surface, Written, write_set,
 };
 use jaspe_edge::message::count;
 use jaspe_edge::plain;
@@ -275,9 +275,6 @@ pub fn unwritable(output: &Path, error: SetError) -> Failure {
         }
     }
 }
-
-/// Pixels of a preview.
-const PREVIEW_SIZE: [u32; 2] = [960, 600];
 
 /// The folder around the set, if it is not there.
 fn missing_parent<'a>(path: &Path, output: &'a Path) -> Option<&'a Path> {
