@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import base64
 import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, Callable
 
 import pytest
 
@@ -26,7 +27,7 @@ def kinds(book: Any) -> list[list[str]]:
 
 def test_there_are_notebooks() -> None:
     assert {path.stem for path in EXAMPLES} >= {"noise", "material", "bake", "frames"}
-    assert sum(path.stat().st_size for path in EXAMPLES) < 4_000_000
+    assert sum(path.stat().st_size for path in EXAMPLES) < 4_500_000
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
@@ -39,6 +40,24 @@ def test_notebooks_run(path: Path, tmp_path: Path) -> None:
     # What is stored was made by these cells.
     assert kinds(book) == kinds(stored)
     assert any("image/png" in found for found in kinds(book))
+
+
+def test_a_notebook_shows_the_picture_of_the_command_line(command: Callable[..., str], tmp_path: Path) -> None:
+    """The README has both side by side: its command, and the last cell of the notebook, with the same bits below it."""
+
+    def picture(cell: Any) -> bytes:
+        (shown,) = [output.data["image/png"] for output in cell.outputs if "image/png" in output.get("data", {})]
+        return base64.b64decode(shown)
+
+    last = [cell for cell in nbformat.read(EXAMPLES[0].parent / "bake.ipynb", as_version=4).cells if cell.cell_type == "code"][-1]
+    readme = (EXAMPLES[0].parents[1] / "README.md").read_text("utf-8")
+    words = "jaspe bake organic --preview -o organic/"
+    assert f"| `{words}` | `{last.source}` in [a notebook](examples/bake.ipynb) |" in readme
+    assert len(picture(last)) > 100_000
+    book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("import jaspe"), nbformat.v4.new_code_cell(last.source)])
+    nbclient.NotebookClient(book, timeout=300).execute()
+    command(*words.split()[1:-1], tmp_path / "organic", "--quiet")
+    assert picture(book.cells[1]) == (tmp_path / "organic" / "preview.png").read_bytes()
 
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="the types of Matplotlib and NumPy are written for later versions")

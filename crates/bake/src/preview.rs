@@ -1,6 +1,7 @@
 //! A baked material on a ball and a cloth, under a sky, by the project's own renderer. Any surface but a plane wears its maps itself.
 
 use std::fmt::Write as _;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
 use jaspe_noise::math::{cos, sin};
@@ -56,7 +57,8 @@ pub fn preview(bake: &Bake, frame: u32, size: [u32; 2], observer: &dyn Observer)
         let compiled = compiled.expect("the scene of the preview has no mistakes");
         let options = RenderOptions { threads: Some(rayon::current_num_threads()), ..RenderOptions::default() };
         let [before, most] = most;
-        Ok(render(&compiled, &options, &Work { observer, before, most, total: 100 })?.0)
+        let work = Work { observer, before, most, total: 100 };
+        Ok(render(&compiled, &options, &Growing { work, first: AtomicU64::new(u64::MAX) })?.0)
     };
     let day = by_day(mean(&arrays, Map::Roughness));
     if !glows {
@@ -69,6 +71,25 @@ pub fn preview(bake: &Bake, frame: u32, size: [u32; 2], observer: &dyn Observer)
         pixel.iter_mut().zip(glow).take(3).for_each(|(light, glow)| *light = DUSK * *light + glow);
     }
     Ok(sum)
+}
+
+/// Tells of a rendering whose total is known only when its first pass is over, as those of previews are.
+struct Growing<'a> {
+    work: Work<'a>,
+    /// The first total: that of the first pass.
+    first: AtomicU64,
+}
+
+impl Observer for Growing<'_> {
+    fn progress(&self, done: u64, total: u64) {
+        let first = self.first.fetch_min(total, Ordering::Relaxed).min(total);
+        // The second pass has taken one and a half times as long as the first.
+        self.work.progress(done, total.max(first * 5 / 2));
+    }
+
+    fn cancelled(&self) -> bool {
+        self.work.cancelled()
+    }
 }
 
 /// Stops as another observer does, and tells it nothing.

@@ -81,6 +81,8 @@ fn color(parser: &mut Parser<'_>, draft: &mut Draft, _: Span) -> Parsed<()> {
 }
 
 const DIFF: Key<Draft> = Key::new("diff", "diff { \"sRGB nonlinear\" 1 0.5 0 }", diffuse_color);
+/// The colour of what shines by itself, in whose place a texture may stand.
+const SHINING: Key<Draft> = Key::new("color", "color { \"sRGB nonlinear\" 1 0.5 0 }", diffuse_color);
 const BRIGHT: Key<Draft> = Key::new("bright", "bright 1 1 1", diffuse_color);
 
 fn diffuse_color(parser: &mut Parser<'_>, draft: &mut Draft, _: Span) -> Parsed<()> {
@@ -135,7 +137,7 @@ const DIFFUSE_REQUIRED: Required = (&["diff", "texture"], "diff 0.5 0.5 0.5");
 pub(super) const SHADERS: &[ShaderType] = &[
     ShaderType {
         name: "constant",
-        keys: &[NAME, TYPE, Key::new("color", "color 1 1 1", diffuse_color), TEXTURE],
+        keys: &[NAME, TYPE, SHINING, TEXTURE],
         required: &[],
         build: |d, _| Some(ShaderKind::Constant { color: d.diffuse? }),
     },
