@@ -1,10 +1,9 @@
-//! The bounding hierarchy: a binary tree by the surface area heuristic, collapsed to nodes of eight children.
-//!
-//! Binned SAH as in [Wald 2007] "On fast Construction of SAH-based Bounding Volume Hierarchies"; the collapse opens
-//! the child of largest area first, as in [Wald et al. 2008] "Getting Rid of Packets".
-//! Leaves hold one block of up to eight primitives of one kind, so that a leaf costs one pass of the kernels.
+//! The bounding hierarchy: nodes of eight children, whose leaves hold one block of up to eight primitives of one kind, so
+//! that a leaf costs one pass of the kernels. [`super::build`] makes it.
 
 use glam::Vec3;
+
+use super::simd::{Simd, Vec3s};
 
 /// An axis-aligned box.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,14 +24,9 @@ impl Aabb {
         Aabb { min: self.min.min(p), max: self.max.max(p) }
     }
 
-    pub fn union(self, other: Aabb) -> Aabb {
-        Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
-    }
-
-    /// Half of the surface area; zero for the empty box.
-    fn half_area(self) -> f32 {
-        let d = (self.max - self.min).max(Vec3::ZERO);
-        d.x * d.y + d.y * d.z + d.z * d.x
+    fn center(self) -> Vec3 {
+        // Halves first: the sum of two large coordinates may overflow.
+        self.min * 0.5 + self.max * 0.5
     }
 
     pub fn is_finite(self) -> bool {
@@ -70,6 +64,16 @@ impl Child {
     const LEAF: u32 = 1 << 31;
     const INDEX: u32 = (1 << 29) - 1;
 
+    /// The child as a number.
+    pub const fn code(self) -> u32 {
+        self.0
+    }
+
+    /// The child of a number that was one.
+    pub const fn of(code: u32) -> Child {
+        Child(code)
+    }
+
     pub fn node(index: usize) -> Child {
         debug_assert!(index as u32 <= Self::INDEX);
         Child(index as u32)
@@ -90,6 +94,17 @@ impl Child {
         (self.0 & Self::INDEX) as usize
     }
 
+    /// The same child where so many nodes and blocks come before its own.
+    pub fn shifted(self, nodes: usize, blocks: usize) -> Child {
+        if self == Child::NONE {
+            self
+        } else if self.is_node() {
+            Child::node(self.index() + nodes)
+        } else {
+            Child::leaf(self.kind(), self.index() + blocks)
+        }
+    }
+
     #[inline(always)]
     pub fn kind(self) -> Kind {
         match self.0 >> 29 & 3 {
@@ -105,196 +120,84 @@ impl Child {
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
-    /// `[axis][0 = min, 1 = max][child]`.
-    pub bounds: [[[f32; 8]; 2]; 3],
-    pub children: [Child; 8],
+    /// Sides of the boxes of all children: the least x, the greatest x, the least y and so on.
+    pub sides: [[f32; 8]; 6],
+    /// The children, as [`Child::code`].
+    pub codes: [u32; 8],
+    /// The children from the farthest to the nearest, for rays of each octant: the slot at each place, in three bits for
+    /// each octant. See [`Octant`].
+    pub order: [u32; 8],
+}
+
+/// Which components of a direction are negative, as the bits x, y and z.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Octant(u32);
+
+impl Octant {
+    #[inline(always)]
+    pub fn new([x, y, z]: [bool; 3]) -> Octant {
+        Octant(u32::from(x) | u32::from(y) << 1 | u32::from(z) << 2)
+    }
+
+    /// Where the octant's slots lie in [`Node::order`].
+    #[inline(always)]
+    pub fn shift(self) -> u32 {
+        self.0 * 3
+    }
+}
+
+/// Which of [`Node::sides`] rays of an octant cross first, by axis; opposite to each lies the one with the last bit turned.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sides(pub [u32; 3]);
+
+impl Sides {
+    #[inline(always)]
+    pub fn new([x, y, z]: [bool; 3]) -> Sides {
+        Sides([u32::from(x), 2 + u32::from(y), 4 + u32::from(z)])
+    }
 }
 
 impl Node {
-    /// A node without children; its boxes are inverted and never hit.
-    pub const EMPTY: Node =
-        Node { bounds: [[[f32::INFINITY; 8], [f32::NEG_INFINITY; 8]]; 3], children: [Child::NONE; 8] };
+    /// The sides of all children that are crossed first.
+    #[inline(always)]
+    pub fn near<S: Simd>(&self, Sides([x, y, z]): Sides) -> Vec3s<S> {
+        let sides = &self.sides;
+        Vec3s { x: S::load(&sides[x as usize]), y: S::load(&sides[y as usize]), z: S::load(&sides[z as usize]) }
+    }
 
-    pub fn set(&mut self, slot: usize, bounds: Aabb, child: Child) {
-        for axis in 0..3 {
-            self.bounds[axis][0][slot] = bounds.min[axis];
-            self.bounds[axis][1][slot] = bounds.max[axis];
+    /// The sides of all children that are crossed last.
+    #[inline(always)]
+    pub fn far<S: Simd>(&self, Sides([x, y, z]): Sides) -> Vec3s<S> {
+        self.near(Sides([x ^ 1, y ^ 1, z ^ 1]))
+    }
+
+    #[inline(always)]
+    pub fn child(&self, slot: usize) -> Child {
+        Child(self.codes[slot & 7])
+    }
+
+    /// A node with these children, at most eight.
+    pub fn new(children: &[(Aabb, Child)]) -> Node {
+        // What is not there has an inverted box and is never hit.
+        let (min, max) = ([f32::INFINITY; 8], [f32::NEG_INFINITY; 8]);
+        let mut node = Node { sides: [min, max, min, max, min, max], codes: [Child::NONE.code(); 8], order: [0; 8] };
+        for (slot, &(bounds, child)) in children.iter().enumerate() {
+            for axis in 0..3 {
+                node.sides[2 * axis][slot] = bounds.min[axis];
+                node.sides[2 * axis + 1][slot] = bounds.max[axis];
+            }
+            node.codes[slot] = child.code();
         }
-        self.children[slot] = child;
-    }
-}
-
-/// A node of the binary tree that is collapsed afterwards.
-#[derive(Clone, Copy)]
-struct BinaryNode {
-    bounds: Aabb,
-    /// The primitives below it, as a range of the reordered list.
-    first: u32,
-    count: u32,
-    /// Indices of its children; none where the primitives fit one leaf.
-    children: Option<[u32; 2]>,
-}
-
-/// Bins per axis. More bins gain less than 1 % in cost.
-const BINS: usize = 16;
-/// Past this depth ranges are halved, so that no input can make a deeper tree than this plus 32.
-const SAH_DEPTH: u32 = 48;
-/// Depth that no tree exceeds; the traversal's stack is sized by it.
-pub(crate) const MAX_DEPTH: usize = SAH_DEPTH as usize + 32;
-/// Ranges longer than this are built by two threads.
-const PARALLEL: usize = 8192;
-
-/// A primitive of the builder: its box, its centre and its index.
-#[derive(Clone, Copy)]
-pub(crate) struct Item {
-    pub bounds: Aabb,
-    pub index: u32,
-}
-
-impl Item {
-    fn center(&self) -> Vec3 {
-        // Halves first: the sum of two large coordinates may overflow.
-        self.bounds.min * 0.5 + self.bounds.max * 0.5
-    }
-}
-
-/// Adds a tree over `items` to `nodes` and returns its root and bounds; `leaf` turns up to `leaf_size` items into a leaf.
-pub(crate) fn build(
-    items: &mut [Item],
-    leaf_size: usize,
-    nodes: &mut Vec<Node>,
-    leaf: &mut dyn FnMut(&[Item]) -> Child,
-) -> Option<(Child, Aabb)> {
-    if items.is_empty() {
-        return None;
-    }
-    let mut binary = Vec::with_capacity(items.len() / leaf_size.max(1) * 3);
-    build_range(items, 0, leaf_size, 0, &mut binary);
-    Some((collapse(&binary, 0, items, nodes, leaf), binary[0].bounds))
-}
-
-/// Builds one range depth first, appends it to `nodes` and returns the index of its root.
-fn build_range(items: &mut [Item], first: u32, leaf_size: usize, depth: u32, nodes: &mut Vec<BinaryNode>) -> u32 {
-    let bounds = items.iter().fold(Aabb::EMPTY, |b, item| b.union(item.bounds));
-    let at = nodes.len();
-    nodes.push(BinaryNode { bounds, first, count: items.len() as u32, children: None });
-    if items.len() <= leaf_size {
-        return at as u32;
-    }
-    let middle = if depth < SAH_DEPTH { partition(items) } else { None }.unwrap_or(items.len() / 2);
-    let parallel = items.len() > PARALLEL;
-    let (left, right) = items.split_at_mut(middle);
-    let build = |items, first, nodes: &mut _| build_range(items, first, leaf_size, depth + 1, nodes);
-    let middle = first + middle as u32;
-    let children = if parallel {
-        let (mut a, mut b) = (Vec::new(), Vec::new());
-        rayon::join(|| build(left, first, &mut a), || build(right, middle, &mut b));
-        [append(nodes, a), append(nodes, b)]
-    } else {
-        [build(left, first, nodes), build(right, middle, nodes)]
-    };
-    nodes[at].children = Some(children);
-    at as u32
-}
-
-/// Moves a subtree with indices of its own behind `nodes` and returns the new index of its root.
-fn append(nodes: &mut Vec<BinaryNode>, subtree: Vec<BinaryNode>) -> u32 {
-    let offset = nodes.len() as u32;
-    nodes.extend(
-        subtree.into_iter().map(|node| BinaryNode { children: node.children.map(|c| c.map(|i| i + offset)), ..node }),
-    );
-    offset
-}
-
-/// Sorts `items` into two sides by the cheapest of all binned splits; `None` where no split separates anything.
-fn partition(items: &mut [Item]) -> Option<usize> {
-    let centers = Aabb::around(items.iter().map(Item::center));
-    let extent = centers.max - centers.min;
-    let scale = Vec3::from_array(std::array::from_fn(|k| {
-        let scale = BINS as f32 * 0.9999 / extent[k];
-        if extent[k] > 0.0 && scale.is_finite() { scale } else { 0.0 }
-    }));
-    let bin =
-        |item: &Item, axis: usize| (((item.center()[axis] - centers.min[axis]) * scale[axis]) as usize).min(BINS - 1);
-    let mut bins = [[(Aabb::EMPTY, 0u32); BINS]; 3];
-    for item in items.iter() {
-        for (axis, bins) in bins.iter_mut().enumerate() {
-            let slot = &mut bins[bin(item, axis)];
-            *slot = (slot.0.union(item.bounds), slot.1 + 1);
+        for octant in (0..8).map(Octant) {
+            let sign = Vec3::from_array([0, 1, 2].map(|axis| if octant.0 >> axis & 1 == 0 { 1.0 } else { -1.0 }));
+            let mut slots = [0, 1, 2, 3, 4, 5, 6, 7];
+            let distance =
+                |&slot: &usize| children.get(slot).map_or(f32::INFINITY, |(bounds, _)| bounds.center().dot(sign));
+            slots.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
+            for (order, slot) in node.order.iter_mut().zip(slots) {
+                *order |= (slot as u32) << octant.shift();
+            }
         }
+        node
     }
-    let (axis, split) = (0..3)
-        .filter(|&axis| scale[axis] > 0.0)
-        .filter_map(|axis| cheapest_split(&bins[axis]).map(|(cost, split)| (cost, axis, split)))
-        .fold(None, |best: Option<(f32, usize, usize)>, (cost, axis, split)| match best {
-            Some(best) if best.0 <= cost => Some(best),
-            _ => Some((cost, axis, split)),
-        })
-        .map(|(_, axis, split)| (axis, split))?;
-    let mut middle = 0;
-    for i in 0..items.len() {
-        if bin(&items[i], axis) <= split {
-            items.swap(i, middle);
-            middle += 1;
-        }
-    }
-    (middle > 0 && middle < items.len()).then_some(middle)
-}
-
-/// The last bin of the left side, and the cost, of the cheapest split of one axis.
-fn cheapest_split(bins: &[(Aabb, u32); BINS]) -> Option<(f32, usize)> {
-    let mut right = [(0.0f32, 0u32); BINS];
-    let mut side = (Aabb::EMPTY, 0);
-    for i in (1..BINS).rev() {
-        side = (side.0.union(bins[i].0), side.1 + bins[i].1);
-        right[i] = (side.0.half_area(), side.1);
-    }
-    let mut best = None;
-    let mut side = (Aabb::EMPTY, 0);
-    for i in 0..BINS - 1 {
-        side = (side.0.union(bins[i].0), side.1 + bins[i].1);
-        let (area, count) = right[i + 1];
-        if side.1 == 0 || count == 0 {
-            continue;
-        }
-        let cost = side.0.half_area() * side.1 as f32 + area * count as f32;
-        if best.is_none_or(|(least, _)| cost < least) {
-            best = Some((cost, i));
-        }
-    }
-    best
-}
-
-/// Turns the subtree at `index` into wide nodes.
-fn collapse(
-    binary: &[BinaryNode],
-    index: u32,
-    items: &[Item],
-    nodes: &mut Vec<Node>,
-    leaf: &mut dyn FnMut(&[Item]) -> Child,
-) -> Child {
-    let node = binary[index as usize];
-    let Some(children) = node.children else {
-        return leaf(&items[node.first as usize..][..node.count as usize]);
-    };
-    let mut open = children.to_vec();
-    while open.len() < 8 {
-        let widest = open
-            .iter()
-            .enumerate()
-            .filter(|(_, i)| binary[**i as usize].children.is_some())
-            .map(|(slot, i)| (binary[*i as usize].bounds.half_area(), slot))
-            .reduce(|a, b| if b.0 > a.0 { b } else { a });
-        let Some((_, slot)) = widest else { break };
-        let [left, right] = binary[open[slot] as usize].children.expect("only inner nodes are opened");
-        open[slot] = left;
-        open.push(right);
-    }
-    let at = nodes.len();
-    nodes.push(Node::EMPTY);
-    for (slot, &child) in open.iter().enumerate() {
-        let code = collapse(binary, child, items, nodes, leaf);
-        nodes[at].set(slot, binary[child as usize].bounds, code);
-    }
-    Child::node(at)
 }

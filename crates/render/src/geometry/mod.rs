@@ -4,11 +4,14 @@
 //! meets is named by an [`Id`]; where and how it lies there is worked out in [`surface`].
 
 pub(crate) mod analytic;
+mod build;
 mod bvh;
+mod collapse;
 mod kernel;
 mod packet;
 mod plan;
 mod rays;
+mod scatter;
 pub(crate) mod simd;
 mod surface;
 mod traverse;
@@ -23,6 +26,7 @@ use crate::motion::Motion;
 use packet::Packet;
 pub(crate) use plan::{Placement, Plan};
 pub(crate) use rays::{Hits, Ids, RayView, Rays, Rows};
+use simd::Lanes as _;
 pub(crate) use surface::{Surface, Surfaces};
 pub(crate) use traverse::Scratch;
 
@@ -286,12 +290,18 @@ impl simd::Kernel for Closest<'_> {
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Closest { geometry, rays, hits, scratch } = self;
-        for start in (0..rays.len()).step_by(rays::GROUP) {
-            let mut packet = Packet::<S, false>::new(rays, start);
+        let Scratch { packet: stack, flights, inner, scattered } = scratch;
+        scattered.clear();
+        for start in (0..rays.len()).step_by(S::Wide::COUNT) {
+            let mut packet = Packet::<S::Wide>::new(rays, start, false);
             packet.planes(&geometry.planes);
-            packet.trace(&geometry.tree, scratch);
+            match packet.way::<S>() {
+                Some(way) => packet.walk(&geometry.tree, &way, stack, [&mut flights[0], inner]),
+                None => packet.scatter(scattered),
+            }
             packet.store(hits);
         }
+        scatter::trace::<S, _>(&geometry.tree, rays, scattered, flights, inner, &mut scatter::Closest(hits));
     }
 }
 
@@ -309,14 +319,20 @@ impl simd::Kernel for Occluded<'_> {
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Occluded { geometry, rays, blocked, scratch } = self;
-        for start in (0..rays.len()).step_by(rays::GROUP) {
-            let mut packet = Packet::<S, true>::new(rays, start);
+        let Scratch { packet: stack, flights, inner, scattered } = scratch;
+        scattered.clear();
+        for start in (0..rays.len()).step_by(S::Wide::COUNT) {
+            let mut packet = Packet::<S::Wide>::new(rays, start, true);
+            packet.planes(&geometry.planes);
             if !packet.is_dead() {
-                packet.planes(&geometry.planes);
-                packet.trace(&geometry.tree, scratch);
+                match packet.way::<S>() {
+                    Some(way) => packet.walk(&geometry.tree, &way, stack, [&mut flights[0], inner]),
+                    None => packet.scatter(scattered),
+                }
             }
             packet.store_blocked(blocked);
         }
+        scatter::trace::<S, _>(&geometry.tree, rays, scattered, flights, inner, &mut scatter::Blocked(blocked));
     }
 }
 

@@ -1,75 +1,62 @@
-//! Eight rays at a time through the hierarchy, for rays that go the same way: a box or a primitive is loaded once for
+//! Rays that go the same way, eight or sixteen at a time through the hierarchy: a box or a primitive is loaded once for
 //! all of them. What they meet is what they would meet alone, to the last bit.
 
 use glam::Vec3;
 
-use super::bvh::{Aabb, Child, Kind, Node};
-use super::kernel::{self, Crossing, Lanes};
-use super::rays::{GROUP as SIZE, Hits, RayView, eight};
-use super::simd::{Simd, Vec3x8};
-use super::traverse::{STACK, Scratch, SphereBlock, Tree, TriangleBlock};
+use super::bvh::{Aabb, Child, Kind, Node, Octant, Sides};
+use super::kernel::{self, Crossing, Inverse, Plain, Shear, Slab};
+use super::rays::{Hits, RayView, group, group_bits};
+use super::simd::{Lanes, Simd, Vec3s};
+use super::traverse::{Flight, Nested, STACK, SphereBlock, Tree, TriangleBlock};
 use super::{Hit, Id, PlaneShape};
 
 /// So few rays go on one by one: alone they test eight boxes in the time in which a packet tests one or two.
 const FEW: u32 = 1;
-/// All rays.
-const ALL: u32 = (1 << SIZE) - 1;
 
-/// A box that is to be entered: by which rays, and at which distance by each of them.
-#[derive(Clone, Copy)]
-pub(crate) struct Entry {
-    child: Child,
-    mask: u32,
-    near: [f32; SIZE],
+/// Where a packet goes on later: children, each as its node and its slot there, where the packet's hull enters them, and
+/// which rays may.
+pub(super) struct Stack {
+    near: [f32; STACK],
+    places: [u32; STACK],
+    masks: [u32; STACK],
 }
-
-/// Where a packet goes on later.
-pub(crate) type Stack = Box<[Entry; STACK]>;
 
 /// A stack without entries.
-pub(crate) fn stack() -> Stack {
-    Box::new([Entry { child: Child::NONE, mask: 0, near: [0.0; SIZE] }; STACK])
+pub(super) fn stack() -> Box<Stack> {
+    Box::new(Stack { near: [0.0; STACK], places: [0; STACK], masks: [0; STACK] })
 }
 
-/// Eight rays and the best that each has met so far.
-pub(crate) struct Packet<'a, S, const ANY: bool> {
+/// Rays and the best that each has met so far.
+pub(super) struct Packet<'a, L> {
     rays: RayView<'a>,
-    /// The first of the eight.
+    /// The first of them.
     start: usize,
-    lanes: Lanes<S>,
-    /// Rays that are still looking: with `ANY`, a ray stops at the first hit.
+    any: bool,
+    origin: Vec3s<L>,
+    direction: Vec3s<L>,
+    t_min: L,
+    /// Rays that are still looking: with `any`, a ray stops at the first hit.
     alive: u32,
     /// Rays that start at a primitive and must not meet it.
     leaving: u32,
-    skip: Names<S>,
-    t: S,
-    u: S,
-    v: S,
-    ids: Names<S>,
+    skip: Names<L>,
+    t: L,
+    u: L,
+    v: L,
+    ids: Names<L>,
 }
 
 /// An [`Id`] in each lane, as bits.
 #[derive(Clone, Copy)]
-struct Names<S> {
-    object: S,
-    index: S,
+struct Names<L> {
+    object: L,
+    index: L,
 }
 
-impl<S: Simd> Names<S> {
+impl<L: Lanes> Names<L> {
     #[inline(always)]
     fn splat(id: Id) -> Self {
-        Names { object: S::splat(f32::from_bits(id.object)), index: S::splat(f32::from_bits(id.index)) }
-    }
-
-    #[inline(always)]
-    fn load(object: &[u32], index: &[u32], start: usize) -> Self {
-        let none = u32::MAX;
-        Names { object: S::load_bits(&eight(object, start, none)), index: S::load_bits(&eight(index, start, none)) }
-    }
-
-    #[inline(always)]
-    fn store(self) -> [[u32; SIZE]; 2] {
-        [self.object.store_bits(), self.index.store_bits()]
+        Names { object: L::splat(f32::from_bits(id.object)), index: L::splat(f32::from_bits(id.index)) }
     }
 
     /// Lanes that hold the same name.
@@ -80,39 +67,51 @@ impl<S: Simd> Names<S> {
 
     #[inline(always)]
     fn select(mask: u32, yes: Self, no: Self) -> Self {
-        Names { object: S::select(mask, yes.object, no.object), index: S::select(mask, yes.index, no.index) }
+        Names { object: L::select(mask, yes.object, no.object), index: L::select(mask, yes.index, no.index) }
     }
 }
 
-/// What the boxes need to know of a packet whose directions have the same signs.
-struct Space<S> {
-    inverse: Vec3x8<S>,
-    /// Which side of a box is entered, by axis.
-    sides: [usize; 3],
+/// What a packet that goes one way needs besides: directions of the same signs, and the same dominant axis.
+pub(super) struct Way<L, S> {
+    slab: Slab<L>,
+    shear: Shear<L>,
+    turned: [usize; 3],
+    sides: Sides,
+    octant: Octant,
     hull: Hull<S>,
 }
 
-/// A ray, eight times over, that enters boxes no later and leaves them no earlier than any of the packet: intervals of
-/// origins and directions in place of numbers ([Boulos, Wald, Shirley 2006] "Geometric and Arithmetic Culling Methods
-/// for Entire Ray Packets").
+/// A ray that enters boxes no later and leaves them no earlier than any of the packet: intervals of origins and directions
+/// in place of numbers ([Boulos, Wald, Shirley 2006] "Geometric and Arithmetic Culling Methods for Entire Ray Packets").
 struct Hull<S> {
-    near_origin: Vec3x8<S>,
-    near_inverse: Vec3x8<S>,
-    far_origin: Vec3x8<S>,
-    far_inverse: Vec3x8<S>,
+    enter: (Vec3s<S>, Vec3s<S>),
+    leave: (Vec3s<S>, Vec3s<S>),
 }
 
-impl<'a, S: Simd, const ANY: bool> Packet<'a, S, ANY> {
-    /// The eight rays from `start` on. Past the end there are rays that look for nothing, and go where the last one
-    /// goes, so that the packet stays as coherent as it is.
+impl<'a, L: Lanes> Packet<'a, L> {
+    /// The rays from `start` on. Past the end there are rays that look for nothing, and go where the last one goes, so
+    /// that the packet stays as coherent as it is.
     #[inline(always)]
-    pub fn new(rays: RayView<'a>, start: usize) -> Self {
-        let (zero, t) = (S::splat(0.0), S::load(&eight(rays.t_max, start, -1.0)));
-        let (origin, direction) = (rays.origin.group(start), rays.direction.group(start));
-        let lanes = Lanes { origin, direction, t_min: S::splat(rays.t_min) };
-        let (skip, none) = (Names::load(&rays.skip.object, &rays.skip.index, start), Names::splat(Id::NONE));
-        let (alive, leaving) = (zero.le(t), ALL & !skip.same(none));
-        Packet { rays, start, lanes, alive, leaving, skip, t, u: zero, v: zero, ids: none }
+    pub fn new(rays: RayView<'a>, start: usize, any: bool) -> Self {
+        let (zero, t) = (L::splat(0.0), group(rays.t_max, start, -1.0));
+        let (object, index) = (&rays.skip.object, &rays.skip.index);
+        let skip = Names { object: group_bits(object, start, u32::MAX), index: group_bits(index, start, u32::MAX) };
+        let none = Names::splat(Id::NONE);
+        Packet {
+            rays,
+            start,
+            any,
+            origin: rays.origin.group(start),
+            direction: rays.direction.group(start),
+            t_min: L::splat(rays.t_min),
+            alive: zero.le(t),
+            leaving: L::ALL & !skip.same(none),
+            skip,
+            t,
+            u: zero,
+            v: zero,
+            ids: none,
+        }
     }
 
     /// Whether no ray of the packet looks for anything.
@@ -124,131 +123,169 @@ impl<'a, S: Simd, const ANY: bool> Packet<'a, S, ANY> {
     /// Writes what the rays have met.
     #[inline(always)]
     pub fn store(&self, hits: &mut Hits) {
-        let start = self.start;
-        let [object, index] = self.ids.store();
-        put(self.t.store(), &mut hits.t[start..]);
-        put(self.u.store(), &mut hits.u[start..]);
-        put(self.v.store(), &mut hits.v[start..]);
-        put(object, &mut hits.id.object[start..]);
-        put(index, &mut hits.id.index[start..]);
+        put(self.t.store().as_ref(), &mut hits.t[self.start..]);
+        put(self.u.store().as_ref(), &mut hits.u[self.start..]);
+        put(self.v.store().as_ref(), &mut hits.v[self.start..]);
+        put(self.ids.object.store_bits().as_ref(), &mut hits.id.object[self.start..]);
+        put(self.ids.index.store_bits().as_ref(), &mut hits.id.index[self.start..]);
     }
 
     /// Writes which rays have met anything, or have not looked.
     #[inline(always)]
     pub fn store_blocked(&self, blocked: &mut [bool]) {
-        for (i, blocked) in blocked[self.start..].iter_mut().take(SIZE).enumerate() {
+        for (i, blocked) in blocked[self.start..].iter_mut().take(L::COUNT).enumerate() {
             *blocked = self.alive >> i & 1 == 0;
+        }
+    }
+
+    /// Leaves the rays that look for something to whoever traces them one by one.
+    #[inline(always)]
+    pub fn scatter(&self, scattered: &mut Vec<u32>) {
+        let mut rest = self.alive;
+        while rest != 0 {
+            scattered.push(self.start as u32 + rest.trailing_zeros());
+            rest &= rest - 1;
         }
     }
 
     /// What ray `i` has met.
     #[inline(always)]
     fn hit(&self, i: usize) -> Hit {
-        let [object, index] = self.ids.store();
+        let (object, index) = (self.ids.object.store_bits(), self.ids.index.store_bits());
         let (t, u, v) = (self.t.store(), self.u.store(), self.v.store());
-        Hit { t: t[i], u: u[i], v: v[i], id: Id { object: object[i], index: index[i] }, time: None }
+        let id = Id { object: object.as_ref()[i], index: index.as_ref()[i] };
+        Hit { t: t.as_ref()[i], u: u.as_ref()[i], v: v.as_ref()[i], id, time: None }
     }
 
-    /// Goes through the tree.
+    /// `None` if the rays do not go one way.
     #[inline(always)]
-    pub fn trace(&mut self, tree: &Tree, scratch: &mut Scratch) {
-        let root = tree.root;
-        if root == Child::NONE {
-        } else if !root.is_node() {
-            self.leaf(tree, root, ALL, S::splat(0.0), scratch);
-        } else if let Some(space) = self.space() {
-            self.walk(tree, &space, scratch);
-        } else {
-            self.alone(tree, root, ALL, [0.0; SIZE], scratch);
+    pub fn way<S: Simd>(&self) -> Option<Way<L, S>> {
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let Vec3s { x, y, z } = self.direction;
+        // A zero has a sign too.
+        let signs = [one.copysign(x).lt(zero), one.copysign(y).lt(zero), one.copysign(z).lt(zero)];
+        if signs.iter().any(|&signs| signs != 0 && signs != L::ALL) {
+            return None;
         }
+        let (x, y, z) = (x.max(zero.sub(x)), y.max(zero.sub(y)), z.max(zero.sub(z)));
+        let dominant = match (y.le(x) & z.le(x), z.le(y)) {
+            (first, _) if first == L::ALL => 0,
+            (0, second) if second == L::ALL => 1,
+            (0, 0) => 2,
+            _ => return None,
+        };
+        let inverse = Inverse::new(self.direction);
+        let turned = kernel::turned(dominant);
+        let (origin, direction) = (self.origin.turned(turned), self.direction.turned(turned));
+        let slope = (direction.x.div(direction.z), direction.y.div(direction.z));
+        let scale = L::splat(1.0).div(direction.z);
+        let negative = signs.map(|signs| signs != 0);
+        Some(Way {
+            shear: Shear { origin, slope, scale, t_min: self.t_min },
+            turned,
+            sides: Sides::new(negative),
+            octant: Octant::new(negative),
+            hull: Hull::around(self.origin, &inverse, negative),
+            slab: Slab { origin: self.origin, inverse },
+        })
     }
 
-    /// Goes through the tree, nearest boxes of the first ray first.
+    /// Goes through the tree, nearest boxes first.
     #[inline(always)]
-    fn walk(&mut self, tree: &Tree, space: &Space<S>, scratch: &mut Scratch) {
-        scratch.packet[0] = Entry { child: tree.root, mask: ALL, near: [0.0; SIZE] };
-        let mut top = 1;
+    pub fn walk<S: Simd>(
+        &mut self,
+        tree: &Tree,
+        way: &Way<L, S>,
+        stack: &mut Stack,
+        [flight, inner]: [&mut Flight; 2],
+    ) {
+        let root = tree.root;
+        if !root.is_node() {
+            if root != Child::NONE {
+                self.leaf::<S>(tree, root, way, self.alive, L::splat(0.0), [flight, inner]);
+            }
+            return;
+        }
+        let mut farthest = self.t.most();
+        let mut top = way.open(tree, root.index(), self.alive, farthest, stack, 0);
         while top > 0 {
             top -= 1;
-            let Entry { child, mask, near } = scratch.packet[top];
-            let active = mask & self.alive & S::load(&near).le(self.t);
+            let (place, mask) = (stack.places[top], stack.masks[top] & self.alive);
+            if mask == 0 || stack.near[top] > farthest {
+                continue;
+            }
+            let (node, slot) = (&tree.nodes[place as usize >> 3], place as usize & 7);
+            let (enter, leave) = way.enter(node, slot);
+            let active = mask & enter.le(leave.min(self.t));
             if active == 0 {
                 continue;
             }
+            let child = node.child(slot);
             if active.count_ones() <= FEW {
-                self.alone(tree, child, active, near, scratch);
+                self.alone::<S>(tree, child, active, enter, [&mut *flight, &mut *inner]);
             } else if child.is_node() {
-                self.open(&tree.nodes[child.index()], space, active, &mut scratch.packet, &mut top);
-            } else {
-                self.leaf(tree, child, active, S::load(&near), scratch);
-            }
-            if self.alive == 0 {
-                return;
-            }
-        }
-    }
-
-    /// Puts the children of a node on the stack.
-    #[inline(always)]
-    fn open(&self, node: &Node, space: &Space<S>, active: u32, stack: &mut [Entry; STACK], top: &mut usize) {
-        let mut candidates = space.hull.enter(node, space.sides);
-        let ([x, y, z], [sx, sy, sz]) = (&node.bounds, space.sides);
-        let first = *top;
-        let lead = active.trailing_zeros() as usize & 7;
-        while candidates != 0 {
-            let slot = candidates.trailing_zeros() as usize & 7;
-            candidates &= candidates - 1;
-            let near = Vec3x8 { x: S::splat(x[sx][slot]), y: S::splat(y[sy][slot]), z: S::splat(z[sz][slot]) };
-            let far =
-                Vec3x8 { x: S::splat(x[1 - sx][slot]), y: S::splat(y[1 - sy][slot]), z: S::splat(z[1 - sz][slot]) };
-            let (enter, leave) = kernel::slab(near, far, self.lanes.origin, space.inverse);
-            let mask = active & enter.le(leave.min(self.t));
-            if mask == 0 {
+                top = way.open(tree, child.index(), active, farthest, stack, top);
                 continue;
+            } else {
+                self.leaf::<S>(tree, child, way, active, enter, [&mut *flight, &mut *inner]);
             }
-            let near = enter.store();
-            let mut at = *top;
-            while at > first && stack[at - 1].near[lead] < near[lead] {
-                stack[at] = stack[at - 1];
-                at -= 1;
+            if self.any {
+                if self.alive == 0 {
+                    return;
+                }
+            } else {
+                farthest = self.t.most();
             }
-            stack[at] = Entry { child: node.children[slot], mask, near };
-            *top += 1;
         }
     }
 
     /// Meets what is in a leaf that the `active` rays enter at `near`.
     #[inline(always)]
-    fn leaf(&mut self, tree: &Tree, child: Child, active: u32, near: S, scratch: &mut Scratch) {
+    fn leaf<S: Simd>(
+        &mut self,
+        tree: &Tree,
+        child: Child,
+        way: &Way<L, S>,
+        active: u32,
+        near: L,
+        flights: [&mut Flight; 2],
+    ) {
         match child.kind() {
-            Kind::Triangles => self.triangles(&tree.triangles[child.index()], active, near),
+            Kind::Triangles => self.triangles(&tree.triangles[child.index()], way, active, near),
             Kind::Spheres => self.spheres(&tree.spheres[child.index()], active, near),
-            Kind::Instance | Kind::Analytic => self.alone(tree, child, active, near.store(), scratch),
+            Kind::Instance | Kind::Analytic => self.alone::<S>(tree, child, active, near, flights),
         }
     }
 
     #[inline(always)]
-    fn triangles(&mut self, block: &TriangleBlock, active: u32, near: S) {
+    fn triangles<S>(&mut self, block: &TriangleBlock, way: &Way<L, S>, active: u32, near: L) {
+        let [i, j, k] = [way.turned[0] % 3, way.turned[1] % 3, way.turned[2] % 3];
         for (slot, &id) in block.ids.iter().enumerate() {
             if id == Id::NONE {
                 break;
             }
             let [a, b, c] = &block.vertices;
-            let corners = [corner(a, slot), corner(b, slot), corner(c, slot)];
-            if let Some(crossing) = kernel::triangle(&self.lanes, corners, near, self.t) {
+            let corners = [
+                Vec3s::of([a[i][slot], a[j][slot], a[k][slot]]),
+                Vec3s::of([b[i][slot], b[j][slot], b[k][slot]]),
+                Vec3s::of([c[i][slot], c[j][slot], c[k][slot]]),
+            ];
+            if let Some(crossing) = kernel::triangle(&way.shear, corners, near, self.t) {
                 self.improve(crossing, active, id);
             }
         }
     }
 
     #[inline(always)]
-    fn spheres(&mut self, block: &SphereBlock, active: u32, near: S) {
+    fn spheres(&mut self, block: &SphereBlock, active: u32, near: L) {
+        let plain = Plain { origin: self.origin, direction: self.direction, t_min: self.t_min };
         for (slot, &id) in block.ids.iter().enumerate() {
             if id == Id::NONE {
                 break;
             }
-            let (center, radius) = (corner(&block.centers, slot), S::splat(block.radii[slot]));
-            if let Some(crossing) = kernel::sphere(&self.lanes, center, radius, near, self.t) {
+            let [x, y, z] = &block.centers;
+            let (center, radius) = (Vec3s::of([x[slot], y[slot], z[slot]]), L::splat(block.radii[slot]));
+            if let Some(crossing) = kernel::sphere(&plain, center, radius, near, self.t) {
                 self.improve(crossing, active, id);
             }
         }
@@ -256,25 +293,21 @@ impl<'a, S: Simd, const ANY: bool> Packet<'a, S, ANY> {
 
     /// Sends the `active` rays on without the others.
     #[inline(always)]
-    fn alone(&mut self, tree: &Tree, child: Child, active: u32, near: [f32; SIZE], scratch: &mut Scratch) {
+    fn alone<S: Simd>(&mut self, tree: &Tree, child: Child, active: u32, near: L, [flight, inner]: [&mut Flight; 2]) {
+        let near = near.store();
         let mut rest = active & self.alive;
         while rest != 0 {
-            let i = rest.trailing_zeros() as usize & 7;
+            let i = rest.trailing_zeros() as usize % L::COUNT;
             rest &= rest - 1;
-            let (from, known) = ((near[i], child), self.hit(i));
-            let mut hit = known;
-            tree.trace::<S, ANY>(
-                from,
-                &self.rays.get(self.start + i),
-                &mut hit,
-                &mut scratch.outer,
-                &mut scratch.inner,
-            );
+            let known = self.hit(i);
+            flight.begin::<S>(self.rays.get(self.start + i), (near.as_ref()[i], child), known);
+            flight.fly::<S>(tree, self.any, &mut Nested { flight: &mut *inner, any: self.any });
+            let hit = flight.best;
             if hit.id == known.id {
-            } else if ANY {
+            } else if self.any {
                 self.alive &= !(1 << i);
             } else {
-                self.set(1 << i, [hit.t, hit.u, hit.v].map(S::splat), hit.id);
+                self.set(1 << i, [L::splat(hit.t), L::splat(hit.u), L::splat(hit.v)], hit.id);
             }
         }
     }
@@ -283,18 +316,18 @@ impl<'a, S: Simd, const ANY: bool> Packet<'a, S, ANY> {
     #[inline(always)]
     pub fn planes(&mut self, planes: &[PlaneShape]) {
         for plane in planes {
-            let offset = Vec3x8::splat(plane.point).sub(self.lanes.origin);
-            let normal = Vec3x8::splat(plane.normal);
-            let t = offset.dot(normal).div(self.lanes.direction.dot(normal));
-            let mask = self.lanes.t_min.lt(t) & t.le(self.t);
-            let zero = S::splat(0.0);
+            let offset = Vec3s::splat(plane.point).sub(self.origin);
+            let normal = Vec3s::splat(plane.normal);
+            let t = offset.dot(normal).div(self.direction.dot(normal));
+            let mask = self.t_min.lt(t) & t.le(self.t);
+            let zero = L::splat(0.0);
             self.improve(Crossing { mask, t, u: zero, v: zero }, self.alive, plane.id());
         }
     }
 
     /// Keeps the better hit of every ray that met this primitive.
     #[inline(always)]
-    fn improve(&mut self, crossing: Crossing<S>, active: u32, id: Id) {
+    fn improve(&mut self, crossing: Crossing<L>, active: u32, id: Id) {
         let mut mask = crossing.mask & active & self.alive;
         if mask == 0 {
             return;
@@ -302,14 +335,14 @@ impl<'a, S: Simd, const ANY: bool> Packet<'a, S, ANY> {
         if mask & self.leaving != 0 {
             mask &= !self.skip.same(Names::splat(id));
         }
-        if ANY {
+        if self.any {
             self.alive &= !mask;
             return;
         }
         // Rays that have met a better one just as far away.
         let mut tied = mask & !crossing.t.lt(self.t);
         while tied != 0 {
-            let i = tied.trailing_zeros() as usize & 7;
+            let i = tied.trailing_zeros() as usize % L::COUNT;
             tied &= tied - 1;
             if !id.precedes(self.hit(i).id) {
                 mask &= !(1 << i);
@@ -320,70 +353,74 @@ impl<'a, S: Simd, const ANY: bool> Packet<'a, S, ANY> {
 
     /// What the rays of `mask` have met.
     #[inline(always)]
-    fn set(&mut self, mask: u32, [t, u, v]: [S; 3], id: Id) {
-        self.t = S::select(mask, t, self.t);
-        self.u = S::select(mask, u, self.u);
-        self.v = S::select(mask, v, self.v);
+    fn set(&mut self, mask: u32, [t, u, v]: [L; 3], id: Id) {
+        self.t = L::select(mask, t, self.t);
+        self.u = L::select(mask, u, self.u);
+        self.v = L::select(mask, v, self.v);
         self.ids = Names::select(mask, Names::splat(id), self.ids);
     }
+}
 
-    /// `None` if the directions differ in a sign.
+impl<S: Simd> Hull<S> {
+    /// With directions of positive sign a box is entered the earliest by the origin that lies farthest and the smallest
+    /// inverse, unless it lies behind, where all is cut off at 0; it is left the latest by the opposite.
     #[inline(always)]
-    fn space(&self) -> Option<Space<S>> {
-        let Vec3x8 { x, y, z } = self.lanes.direction;
-        let inverse = Vec3x8 { x: kernel::inverse(x), y: kernel::inverse(y), z: kernel::inverse(z) };
-        let (origins, reciprocals) = (self.lanes.origin.bounds(), inverse.bounds());
-        let sides = reciprocals.min.cmplt(Vec3::ZERO);
-        if reciprocals.max.cmplt(Vec3::ZERO) != sides {
-            return None;
+    fn around<L: Lanes>(origin: Vec3s<L>, inverse: &Inverse<L>, negative: [bool; 3]) -> Self {
+        let (origins, enter, leave) = (Aabb::of(origin), Aabb::of(inverse.enter), Aabb::of(inverse.leave));
+        let negative = glam::BVec3::from_array(negative);
+        let pick = |positive: Vec3, other: Vec3| Vec3::select(negative, other, positive);
+        let (last, first) = (pick(origins.max, origins.min), pick(origins.min, origins.max));
+        Hull {
+            enter: (Vec3s::splat(last), Vec3s::splat(pick(enter.min, enter.max))),
+            leave: (Vec3s::splat(first), Vec3s::splat(pick(leave.max, leave.min))),
         }
-        let hull = Hull {
-            near_origin: Vec3x8::splat(Vec3::select(sides, origins.min, origins.max)),
-            near_inverse: Vec3x8::splat(Vec3::select(sides, reciprocals.max, reciprocals.min)),
-            far_origin: Vec3x8::splat(Vec3::select(sides, origins.max, origins.min)),
-            far_inverse: Vec3x8::splat(Vec3::select(sides, reciprocals.min, reciprocals.max)),
-        };
-        let sides = [usize::from(sides.test(0)), usize::from(sides.test(1)), usize::from(sides.test(2))];
-        Some(Space { inverse, sides, hull })
+    }
+}
+
+impl Aabb {
+    /// The box around a point in each lane.
+    #[inline(always)]
+    fn of<L: Lanes>(points: Vec3s<L>) -> Self {
+        let Vec3s { x, y, z } = points;
+        Aabb { min: Vec3::new(x.least(), y.least(), z.least()), max: Vec3::new(x.most(), y.most(), z.most()) }
+    }
+}
+
+impl<L: Lanes, S: Simd> Way<L, S> {
+    /// Puts the children of a node that the hull enters on the stack, and returns the new top.
+    #[inline(always)]
+    fn open(&self, tree: &Tree, node: usize, active: u32, farthest: f32, stack: &mut Stack, top: usize) -> usize {
+        let at = (node as u32) << 3;
+        let node = &tree.nodes[node];
+        let near = node.near(self.sides).sub(self.hull.enter.0).mul(self.hull.enter.1);
+        let far = node.far(self.sides).sub(self.hull.leave.0).mul(self.hull.leave.1);
+        let enter = near.x.max(near.y).max(near.z.max(S::splat(0.0)));
+        let leave = far.x.min(far.y).min(far.z);
+        let room = (
+            stack.near[top..].first_chunk_mut(),
+            stack.places[top..].first_chunk_mut(),
+            stack.masks[top..].first_chunk_mut::<8>(),
+        );
+        let (Some(near), Some(places), Some(masks)) = room else { unreachable!("the stack has room for eight more") };
+        *masks = [active; 8];
+        let slots = [at, at | 1, at | 2, at | 3, at | 4, at | 5, at | 6, at | 7];
+        top + enter.pack(leave.min(S::splat(farthest)), &node.order, self.octant.shift(), &slots, near, places)
+    }
+
+    /// Where the rays enter and leave one child of a node.
+    #[inline(always)]
+    fn enter(&self, node: &Node, slot: usize) -> (L, L) {
+        let (sides, [x, y, z]) =
+            (&node.sides, [self.sides.0[0] as usize, self.sides.0[1] as usize, self.sides.0[2] as usize]);
+        let near = Vec3s::of([sides[x][slot], sides[y][slot], sides[z][slot]]);
+        let far = Vec3s::of([sides[x ^ 1][slot], sides[y ^ 1][slot], sides[z ^ 1][slot]]);
+        kernel::slab(near, far, &self.slab)
     }
 }
 
 /// As much of a group's row as there is room for.
 #[inline(always)]
-fn put<T: Copy>(values: [T; SIZE], row: &mut [T]) {
-    match row.first_chunk_mut() {
-        Some(chunk) => *chunk = values,
-        None => row.iter_mut().zip(values).for_each(|(row, value)| *row = value),
-    }
-}
-
-impl<S: Simd> Vec3x8<S> {
-    /// The box around eight points.
-    #[inline(always)]
-    fn bounds(self) -> Aabb {
-        let min = Vec3::new(self.x.least(), self.y.least(), self.z.least());
-        Aabb { min, max: Vec3::new(self.x.most(), self.y.most(), self.z.most()) }
-    }
-}
-
-impl<S: Simd> Hull<S> {
-    /// The boxes of `node` that some ray of the packet may enter.
-    ///
-    /// With directions of positive sign a box is entered the earliest by the origin that lies farthest and the
-    /// smallest inverse, unless it lies behind, where all is cut off at 0; it is left the latest by the opposite.
-    #[inline(always)]
-    fn enter(&self, node: &Node, [sx, sy, sz]: [usize; 3]) -> u32 {
-        let [x, y, z] = &node.bounds;
-        let near = Vec3x8 { x: S::load(&x[sx]), y: S::load(&y[sy]), z: S::load(&z[sz]) };
-        let far = Vec3x8 { x: S::load(&x[1 - sx]), y: S::load(&y[1 - sy]), z: S::load(&z[1 - sz]) };
-        let (enter, _) = kernel::slab(near, far, self.near_origin, self.near_inverse);
-        let (_, leave) = kernel::slab(near, far, self.far_origin, self.far_inverse);
-        enter.le(leave)
-    }
-}
-
-/// A point of a block in all lanes.
-#[inline(always)]
-fn corner<S: Simd>(rows: &[[f32; 8]; 3], slot: usize) -> Vec3x8<S> {
-    Vec3x8 { x: S::splat(rows[0][slot]), y: S::splat(rows[1][slot]), z: S::splat(rows[2][slot]) }
+fn put<T: Copy>(values: &[T], row: &mut [T]) {
+    let count = row.len().min(values.len());
+    row[..count].copy_from_slice(&values[..count]);
 }

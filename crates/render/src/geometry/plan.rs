@@ -9,7 +9,8 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, Vec3, Vec4};
 
 use super::analytic::{Analytic, Leaf, Leaves};
-use super::bvh::{self, Aabb, Child, Item, Kind, Node};
+use super::build::{Item, build};
+use super::bvh::{Aabb, Child, Kind, Node};
 use super::traverse::{InstanceLeaf, SphereBlock, Tree, TriangleBlock};
 use super::{Geometry, Id, MeshShape, Motions, Object, PerVertex, PlaneShape, Pose, Shape, SphereSet};
 use crate::affine::{self, Affine};
@@ -285,17 +286,16 @@ impl Builder {
             for triangle in &mesh.triangles {
                 let bounds = Aabb::around(triangle.map(|i| mesh.points[i as usize]));
                 if bounds.is_finite() {
-                    items.push(Item { bounds, index: next });
+                    items.push(Item::new(bounds, next));
                 }
                 next += 1;
             }
         }
-        let blocks = &mut self.triangles;
-        bvh::build(&mut items, 8, &mut self.nodes, &mut |items| {
+        build(items, (Kind::Triangles, 8), &mut self.nodes, &mut self.triangles, &|items| {
             let mut block = TriangleBlock::EMPTY;
             for (lane, item) in items.iter().enumerate() {
-                let mesh = starts.partition_point(|&start| start <= item.index) - 1;
-                let index = item.index - starts[mesh];
+                let mesh = starts.partition_point(|&start| start <= item.index()) - 1;
+                let index = item.index() - starts[mesh];
                 let (mesh, object) = meshes[mesh];
                 for (vertex, &i) in mesh.triangles[index as usize].iter().enumerate() {
                     for axis in 0..3 {
@@ -304,36 +304,33 @@ impl Builder {
                 }
                 block.ids[lane] = Id { object, index };
             }
-            blocks.push(block);
-            Child::leaf(Kind::Triangles, blocks.len() - 1)
+            block
         })
     }
 
     /// A tree over spheres: centre with radius, and name.
     fn spheres_of(&mut self, spheres: impl Iterator<Item = (Vec4, Id)>) -> Option<(Child, Aabb)> {
         let spheres: Vec<_> = spheres.filter(|(sphere, _)| sphere.is_finite()).collect();
-        let mut items: Vec<Item> = (0..)
+        let items = (0..)
             .zip(&spheres)
             .map(|(index, &(sphere, _))| {
                 // Rounding may put a point of the sphere just outside the exact box.
                 let (center, radius) = (sphere.truncate(), sphere.w);
                 let reach = Vec3::splat(radius * 1.000_001) + center.abs() * 1e-6;
-                Item { bounds: Aabb { min: center - reach, max: center + reach }, index }
+                Item::new(Aabb { min: center - reach, max: center + reach }, index)
             })
             .collect();
-        let blocks = &mut self.spheres;
-        bvh::build(&mut items, 8, &mut self.nodes, &mut |items| {
+        build(items, (Kind::Spheres, 8), &mut self.nodes, &mut self.spheres, &|items| {
             let mut block = SphereBlock::EMPTY;
             for (lane, item) in items.iter().enumerate() {
-                let (sphere, id) = spheres[item.index as usize];
+                let (sphere, id) = spheres[item.index() as usize];
                 for axis in 0..3 {
                     block.centers[axis][lane] = sphere[axis];
                 }
                 block.radii[lane] = sphere.w;
                 block.ids[lane] = id;
             }
-            blocks.push(block);
-            Child::leaf(Kind::Spheres, blocks.len() - 1)
+            block
         })
     }
 
@@ -346,17 +343,14 @@ impl Builder {
             let object = &plan.objects[number as usize];
             let bounds = plan.around(bounds, number);
             if bounds.is_finite() {
-                items.push(Item { bounds, index: leaves.len() as u32 });
+                items.push(Item::new(bounds, leaves.len() as u32));
                 let moving = object.motion.map(|_| Box::new(object.clone()));
                 let object_from_world = object.pose.object_from_world;
                 leaves.push(InstanceLeaf { root, object_from_world, object: number, moving });
             }
         }
-        let tree = bvh::build(&mut items, 1, &mut self.nodes, &mut |items| {
-            Child::leaf(Kind::Instance, items[0].index as usize)
-        });
-        self.instances = leaves;
-        tree
+        let leaf = |items: &[Item]| leaves[items[0].index() as usize].clone();
+        build(items, (Kind::Instance, 1), &mut self.nodes, &mut self.instances, &leaf)
     }
 
     /// A tree over the parts of the shapes that are met by a formula.
@@ -368,17 +362,15 @@ impl Builder {
             for part in 0..shapes[shape as usize].part_count() {
                 let bounds = plan.around(shapes[shape as usize].bounds(part), number);
                 if bounds.is_finite() {
-                    items.push(Item { bounds, index: leaves.len() as u32 });
+                    items.push(Item::new(bounds, leaves.len() as u32));
                     leaves.push(Leaf { part: part as u32, object: placed.len() as u32 });
                 }
             }
             placed.push((number, shape, object.clone()));
         }
-        let tree = bvh::build(&mut items, 1, &mut self.nodes, &mut |items| {
-            Child::leaf(Kind::Analytic, items[0].index as usize)
-        });
-        self.analytic = Leaves { shapes: shapes.clone(), objects: placed, leaves };
-        tree
+        (self.analytic.shapes, self.analytic.objects) = (shapes.clone(), placed);
+        let leaf = |items: &[Item]| leaves[items[0].index() as usize];
+        build(items, (Kind::Analytic, 1), &mut self.nodes, &mut self.analytic.leaves, &leaf)
     }
 
     /// One root for several trees.
@@ -387,9 +379,8 @@ impl Builder {
             [] => Child::NONE,
             [(root, _)] => *root,
             _ => {
-                let mut node = Node::EMPTY;
-                roots.iter().enumerate().for_each(|(slot, &(root, bounds))| node.set(slot, bounds, root));
-                self.nodes.push(node);
+                let children: Vec<_> = roots.iter().map(|&(root, bounds)| (bounds, root)).collect();
+                self.nodes.push(Node::new(&children));
                 Child::node(self.nodes.len() - 1)
             }
         }

@@ -3,11 +3,8 @@
 
 use glam::Vec3;
 
-use super::simd::{Simd, Vec3x8};
+use super::simd::{Lanes, Vec3s};
 use super::{Hit, Id, Ray};
-
-/// Rays that the kernels take at a time.
-pub(crate) const GROUP: usize = 8;
 
 /// Points or vectors.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -188,31 +185,32 @@ impl RayView<'_> {
 }
 
 impl Rows {
-    /// The eight from `start` on, filled up by the last one.
+    /// As many as there are lanes from `start` on, filled up by the last one.
     #[inline(always)]
-    pub fn group<S: Simd>(&self, start: usize) -> Vec3x8<S> {
-        let last = |row: &[f32]| row.last().copied().unwrap_or_default();
-        Vec3x8 {
-            x: S::load(&eight(&self.x, start, last(&self.x))),
-            y: S::load(&eight(&self.y, start, last(&self.y))),
-            z: S::load(&eight(&self.z, start, last(&self.z))),
-        }
+    pub fn group<L: Lanes>(&self, start: usize) -> Vec3s<L> {
+        let [x, y, z] = [&self.x, &self.y, &self.z].map(|row| row.last().copied().unwrap_or_default());
+        Vec3s { x: group(&self.x, start, x), y: group(&self.y, start, y), z: group(&self.z, start, z) }
     }
 }
 
-/// Eight of a row, filled up at its end.
+/// Most lanes that there are.
+const MOST: usize = 16;
+
+/// As many of a row as there are lanes, filled up at its end.
 #[inline(always)]
-pub(super) fn eight<T: Copy>(row: &[T], start: usize, fill: T) -> [T; GROUP] {
-    match row[start..].first_chunk() {
-        Some(chunk) => *chunk,
-        None => {
-            let mut out = [fill; GROUP];
-            for (out, &value) in out.iter_mut().zip(&row[start..]) {
-                *out = value;
-            }
-            out
-        }
-    }
+pub(super) fn group<L: Lanes>(row: &[f32], start: usize, fill: f32) -> L {
+    if row.len() - start >= L::COUNT { L::load(&row[start..]) } else { L::load(&filled(&row[start..], fill)) }
+}
+
+/// [`group`] of what are no numbers.
+#[inline(always)]
+pub(super) fn group_bits<L: Lanes>(row: &[u32], start: usize, fill: u32) -> L {
+    if row.len() - start >= L::COUNT { L::load_bits(&row[start..]) } else { L::load_bits(&filled(&row[start..], fill)) }
+}
+
+#[inline(always)]
+fn filled<T: Copy>(row: &[T], fill: T) -> [T; MOST] {
+    std::array::from_fn(|i| row.get(i).copied().unwrap_or(fill))
 }
 
 /// What rays met first: see [`Hit`] for what the rows mean.

@@ -1,20 +1,21 @@
-//! One ray against the hierarchy, eight boxes or eight primitives a step.
+//! The tree of a scene, and one ray on its way through it, eight boxes or eight primitives a step.
 //!
 //! The hit that wins is the closest, and of equally close ones that of the smallest [`Id`]. It does not depend on the
 //! way through the tree: see [`kernel::triangle`] about the boxes of the leaves.
 
 use super::analytic;
-use super::bvh::{Child, Kind, MAX_DEPTH, Node};
-use super::kernel::{self, Crossing, Lanes};
+use super::build::MAX_DEPTH;
+use super::bvh::{Child, Kind, Node, Octant, Sides};
+use super::kernel::{self, Crossing, Inverse, Plain, Shear, Slab};
 use super::packet;
-use super::simd::{Simd, Vec3x8};
+use super::simd::{Simd, Vec3s};
 use super::{Hit, Id, Motions, Object, Ray};
 use crate::affine::Affine;
 
 /// Eight triangles; unused lanes hold NaN and are never hit.
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
-pub(crate) struct TriangleBlock {
+pub(super) struct TriangleBlock {
     /// `[vertex][axis][lane]`.
     pub vertices: [[[f32; 8]; 3]; 3],
     pub ids: [Id; 8],
@@ -27,7 +28,7 @@ impl TriangleBlock {
 /// Eight spheres; unused lanes hold NaN and are never hit.
 #[derive(Debug, Clone)]
 #[repr(C, align(64))]
-pub(crate) struct SphereBlock {
+pub(super) struct SphereBlock {
     /// `[axis][lane]`.
     pub centers: [[f32; 8]; 3],
     pub radii: [f32; 8],
@@ -41,7 +42,7 @@ impl SphereBlock {
 
 /// A tree placed somewhere else.
 #[derive(Debug, Clone)]
-pub(crate) struct InstanceLeaf {
+pub(super) struct InstanceLeaf {
     /// The root of its tree.
     pub root: Child,
     /// In the middle of the exposure.
@@ -54,7 +55,7 @@ pub(crate) struct InstanceLeaf {
 
 /// All nodes and leaves of a scene.
 #[derive(Debug, Clone)]
-pub(crate) struct Tree {
+pub(super) struct Tree {
     pub root: Child,
     pub nodes: Vec<Node>,
     pub triangles: Vec<TriangleBlock>,
@@ -64,23 +65,54 @@ pub(crate) struct Tree {
     pub motions: Motions,
 }
 
-/// Most children that wait at a time: a node takes one from the stack and may add eight.
-pub(crate) const STACK: usize = MAX_DEPTH * 7 + 8;
+impl Tree {
+    /// How much memory nodes and leaves take.
+    pub fn bytes(&self) -> usize {
+        let instances = self.instances.capacity() * size_of::<InstanceLeaf>();
+        let blocks = self.triangles.capacity() * size_of::<TriangleBlock>();
+        let spheres = self.spheres.capacity() * size_of::<SphereBlock>();
+        self.nodes.capacity() * size_of::<Node>() + blocks + spheres + instances
+    }
+}
 
-/// Where the traversal goes on later: the entry distance and what is entered.
-type Stack = [(f32, Child); STACK];
+impl Tree {
+    /// Has a child at hand soon.
+    #[inline(always)]
+    pub fn prefetch<S: Simd>(&self, child: Child) {
+        let (nodes, blocks) = (self.nodes.as_ptr().cast::<u8>(), self.triangles.as_ptr().cast::<u8>());
+        let (start, size) =
+            if child.is_node() { (nodes, size_of::<Node>()) } else { (blocks, size_of::<TriangleBlock>()) };
+        // What is nowhere would be looked for in vain, which takes its time.
+        let index = if child == Child::NONE { 0 } else { child.index() };
+        S::prefetch(start.wrapping_add(index * size));
+    }
+}
+
+/// Most children that wait at a time: a node takes one from the stack and may add eight. Eight places more are written to.
+pub(super) const STACK: usize = MAX_DEPTH * 7 + 8 + 8;
+
+const ROOM: &str = "the stack has room for eight more than ever wait";
 
 /// Room for the traversal of one thread; made once, because clearing it costs as much as a short ray.
 pub(crate) struct Scratch {
-    pub outer: Box<Stack>,
-    pub inner: Box<Stack>,
-    pub packet: packet::Stack,
+    pub(super) packet: Box<packet::Stack>,
+    pub(super) flights: Box<[Flight; FLIGHTS]>,
+    pub(super) inner: Box<Flight>,
+    /// Rays that go on without a packet.
+    pub(super) scattered: Vec<u32>,
 }
+
+/// Rays that are on their way at a time.
+pub(super) const FLIGHTS: usize = 16;
 
 impl Default for Scratch {
     fn default() -> Self {
-        let stack = || Box::new([(0.0, Child::NONE); STACK]);
-        Scratch { outer: stack(), inner: stack(), packet: packet::stack() }
+        Scratch {
+            packet: packet::stack(),
+            flights: Box::new([const { Flight::IDLE }; FLIGHTS]),
+            inner: Box::new(Flight::IDLE),
+            scattered: Vec::new(),
+        }
     }
 }
 
@@ -102,145 +134,212 @@ impl InstanceLeaf {
     }
 }
 
-impl Tree {
-    /// How much memory nodes and leaves take.
-    pub fn bytes(&self) -> usize {
-        let instances = self.instances.capacity() * size_of::<InstanceLeaf>();
-        let blocks = self.triangles.capacity() * size_of::<TriangleBlock>();
-        let spheres = self.spheres.capacity() * size_of::<SphereBlock>();
-        self.nodes.capacity() * size_of::<Node>() + blocks + spheres + instances
+/// A ray on its way: what the boxes and the primitives need to know of it, the best that it has met, and what it has
+/// still to look into.
+#[derive(Debug, Clone)]
+pub(super) struct Flight {
+    ray: Ray,
+    pub best: Hit,
+    /// For [`Inverse`].
+    enter: [f32; 3],
+    leave: [f32; 3],
+    sides: Sides,
+    /// See [`Node::order`].
+    shift: u32,
+    /// For [`Shear`].
+    turned: [usize; 3],
+    slope: [f32; 2],
+    scale: f32,
+    /// Which of the caller's rays it is.
+    pub number: u32,
+    /// How many children wait, with what lies at the bottom of the stack.
+    top: usize,
+    /// Where they are entered.
+    near: [f32; STACK],
+    waiting: [u32; STACK],
+}
+
+impl Flight {
+    /// On no way.
+    const IDLE: Flight = Flight {
+        ray: Ray {
+            origin: glam::Vec3::ZERO,
+            direction: glam::Vec3::ZERO,
+            t_min: 0.0,
+            t_max: 0.0,
+            skip: Id::NONE,
+            time: None,
+        },
+        best: Hit::NONE,
+        enter: [0.0; 3],
+        leave: [0.0; 3],
+        sides: Sides([0, 2, 4]),
+        shift: 0,
+        turned: [0; 3],
+        slope: [0.0; 2],
+        scale: 0.0,
+        number: 0,
+        top: 0,
+        near: [0.0; STACK],
+        waiting: [Child::NONE.code(); STACK],
+    };
+
+    /// Sends off a ray that has already met `best`, below a child that it enters at `enter`.
+    #[inline(always)]
+    pub fn begin<S: Simd>(&mut self, ray: Ray, (enter, child): (f32, Child), best: Hit) {
+        let direction = ray.direction.to_array();
+        let [x, y, z] = direction;
+        let inverse = kernel::inverse(S::load(&[x, y, z, 1.0, 1.0, 1.0, 1.0, 1.0]));
+        let ([ex, ey, ez, ..], [lx, ly, lz, ..]) = (inverse.enter.store(), inverse.leave.store());
+        (self.enter, self.leave) = ([ex, ey, ez], [lx, ly, lz]);
+        let negative = [x.is_sign_negative(), y.is_sign_negative(), z.is_sign_negative()];
+        self.sides = Sides::new(negative);
+        self.shift = Octant::new(negative).shift();
+        self.turned = kernel::turned(kernel::dominant(ray.direction));
+        let [i, j, k] = [direction[self.turned[0]], direction[self.turned[1]], direction[self.turned[2]]];
+        let [i, j, k, ..] = S::load(&[i, j, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]).div(S::splat(k)).store();
+        (self.slope, self.scale) = ([i, j], k);
+        (self.ray, self.best) = (ray, best);
+        // The bottom of the stack is reached when nothing waits.
+        (self.near[0], self.waiting[0]) = (f32::NEG_INFINITY, Child::NONE.code());
+        (self.near[1], self.waiting[1]) = (enter, child.code());
+        self.top = 2;
     }
 
-    /// Improves `hit` by what lies below `root`, whose box the ray enters at `enter`. With `ANY`, anything closer will
-    /// do.
+    /// What comes next; [`Child::NONE`] where nothing waits any more.
     #[inline(always)]
-    pub fn trace<S: Simd, const ANY: bool>(
-        &self,
-        (enter, root): (f32, Child),
-        ray: &Ray,
-        hit: &mut Hit,
-        outer: &mut Stack,
-        inner: &mut Stack,
-    ) {
-        let mut nested = Nested::<ANY> { tree: self, ray, stack: inner };
-        self.walk::<S, ANY>((enter, root), ray, outer, hit, &mut nested);
+    pub fn next(&self) -> Child {
+        Child::of(self.waiting[self.top - 1])
     }
 
-    /// Goes through the tree below `root`, nearest boxes first, and improves `best`.
+    /// Puts the children of a node, which comes next, in its place.
     #[inline(always)]
-    fn walk<S: Simd, const ANY: bool>(
-        &self,
-        root: (f32, Child),
-        ray: &Ray,
-        stack: &mut Stack,
-        best: &mut Hit,
-        instances: &mut impl Instances,
-    ) {
-        if root.1 == Child::NONE {
-            return;
+    pub fn open<S: Simd>(&mut self, node: &Node) {
+        let inverse = Inverse::<S> { enter: Vec3s::of(self.enter), leave: Vec3s::of(self.leave) };
+        let slab = Slab { origin: Vec3s::splat(self.ray.origin), inverse };
+        let (enter, leave) = kernel::slab(node.near(self.sides), node.far(self.sides), &slab);
+        let limit = leave.min(S::splat(self.best.t));
+        let at = self.top - 1;
+        let room = (self.near[at..].first_chunk_mut(), self.waiting[at..].first_chunk_mut());
+        let (Some(near), Some(waiting)) = room else { unreachable!("{ROOM}") };
+        self.top = at + enter.pack(limit, &node.order, self.shift, &node.codes, near, waiting);
+    }
+
+    /// Meets what is in the leaf that comes next, and returns whether that made the hit better.
+    #[inline(always)]
+    pub fn meet<S: Simd>(&mut self, tree: &Tree, instances: &mut impl Instances) -> bool {
+        self.top -= 1;
+        let (child, enter) = (Child::of(self.waiting[self.top]), self.near[self.top]);
+        let known = (self.best.t, self.best.id);
+        match child.kind() {
+            Kind::Triangles => self.triangles::<S>(&tree.triangles[child.index()], enter),
+            Kind::Spheres => self.spheres::<S>(&tree.spheres[child.index()], enter),
+            Kind::Instance => {
+                instances.enter::<S>(tree, &tree.instances[child.index()], enter, &self.ray, &mut self.best)
+            }
+            Kind::Analytic => tree.analytic.meet(child.index(), &self.ray, enter, &tree.motions, &mut self.best),
         }
-        let space = Space::<S>::new(ray);
-        let known = best.id;
-        stack[0] = root;
-        let mut top = 1;
-        while top > 0 {
-            top -= 1;
-            let (enter, child) = stack[top];
-            if enter > best.t {
-                continue;
-            }
-            if child.is_node() {
-                let node = &self.nodes[child.index()];
-                let (near, mut mask) = space.enter(node, best.t);
-                let first = top;
-                while mask != 0 {
-                    let slot = mask.trailing_zeros() as usize & 7;
-                    mask &= mask - 1;
-                    let mut at = top;
-                    while at > first && stack[at - 1].0 < near[slot] {
-                        stack[at] = stack[at - 1];
-                        at -= 1;
-                    }
-                    stack[at] = (near[slot], node.children[slot]);
-                    top += 1;
-                }
-                continue;
-            }
-            match child.kind() {
-                Kind::Triangles => self.triangles[child.index()].intersect(&space.lanes, ray, enter, best),
-                Kind::Spheres => self.spheres[child.index()].intersect(&space.lanes, ray, enter, best),
-                Kind::Instance => instances.enter::<S>(&self.instances[child.index()], enter, best),
-                Kind::Analytic => self.analytic.meet(child.index(), ray, enter, &self.motions, best),
-            }
-            if ANY && best.id != known {
+        known != (self.best.t, self.best.id)
+    }
+
+    /// Lets nothing wait any more.
+    #[inline(always)]
+    pub fn stop(&mut self) {
+        self.top = 1;
+    }
+
+    /// Drops what waits farther away than the best hit.
+    #[inline(always)]
+    pub fn prune<S: Simd>(&mut self) {
+        const AS_THEY_LIE: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+        let limit = S::splat(self.best.t);
+        let (mut from, mut to) = (0, 0);
+        // What lies above the top does not count.
+        self.near[self.top..][..8].fill(f32::INFINITY);
+        while from < self.top {
+            let (near, waiting) = (S::load(&self.near[from..]), self.waiting[from..].first_chunk().copied());
+            let room = (self.near[to..].first_chunk_mut(), self.waiting[to..].first_chunk_mut());
+            let (Some(waiting), (Some(near_room), Some(waiting_room))) = (waiting, room) else {
+                unreachable!("{ROOM}")
+            };
+            to += near.pack(limit, &AS_THEY_LIE, 0, &waiting, near_room, waiting_room);
+            from += 8;
+        }
+        self.top = to;
+    }
+
+    /// Goes all the way; with `any`, up to the first hit.
+    #[inline(always)]
+    pub fn fly<S: Simd>(&mut self, tree: &Tree, any: bool, instances: &mut impl Instances) {
+        while self.next() != Child::NONE {
+            if self.near[self.top - 1] > self.best.t {
+                self.top -= 1;
+            } else if self.next().is_node() {
+                self.open::<S>(&tree.nodes[self.next().index()]);
+            } else if self.meet::<S>(tree, instances) && any {
                 return;
             }
         }
     }
-}
 
-/// A ray prepared for one space.
-struct Space<S> {
-    lanes: Lanes<S>,
-    inverse: Vec3x8<S>,
-    /// Which side of a box is entered, by axis.
-    sides: [usize; 3],
-}
-
-impl<S: Simd> Space<S> {
     #[inline(always)]
-    fn new(ray: &Ray) -> Self {
-        let direction = Vec3x8::splat(ray.direction);
-        let inverse = Vec3x8 {
-            x: kernel::inverse(direction.x),
-            y: kernel::inverse(direction.y),
-            z: kernel::inverse(direction.z),
+    fn triangles<S: Simd>(&mut self, block: &TriangleBlock, enter: f32) {
+        let [i, j, k] = [self.turned[0] % 3, self.turned[1] % 3, self.turned[2] % 3];
+        let origin = self.ray.origin.to_array();
+        let shear = Shear {
+            origin: Vec3s::of([origin[i], origin[j], origin[k]]),
+            slope: (S::splat(self.slope[0]), S::splat(self.slope[1])),
+            scale: S::splat(self.scale),
+            t_min: S::splat(self.ray.t_min),
         };
-        let side = |component: f32| usize::from(component.is_sign_negative());
-        Space {
-            lanes: Lanes { origin: Vec3x8::splat(ray.origin), direction, t_min: S::splat(ray.t_min) },
-            inverse,
-            sides: [side(ray.direction.x), side(ray.direction.y), side(ray.direction.z)],
+        let [a, b, c] = &block.vertices;
+        let corners = [load_turned(a, [i, j, k]), load_turned(b, [i, j, k]), load_turned(c, [i, j, k])];
+        if let Some(crossing) = kernel::triangle(&shear, corners, S::splat(enter), S::splat(self.best.t)) {
+            crossing.improve(&mut self.best, &block.ids, self.ray.skip);
         }
     }
 
-    /// Entry distances of the boxes of `node`, and which of them are entered up to `t_max`.
     #[inline(always)]
-    fn enter(&self, node: &Node, t_max: f32) -> ([f32; 8], u32) {
-        let ([x, y, z], [sx, sy, sz]) = (&node.bounds, self.sides);
-        let near = Vec3x8 { x: S::load(&x[sx]), y: S::load(&y[sy]), z: S::load(&z[sz]) };
-        let far = Vec3x8 { x: S::load(&x[1 - sx]), y: S::load(&y[1 - sy]), z: S::load(&z[1 - sz]) };
-        let (enter, leave) = kernel::slab(near, far, self.lanes.origin, self.inverse);
-        (enter.store(), enter.le(leave.min(S::splat(t_max))))
+    fn spheres<S: Simd>(&mut self, block: &SphereBlock, enter: f32) {
+        let plain = Plain {
+            origin: Vec3s::splat(self.ray.origin),
+            direction: Vec3s::splat(self.ray.direction),
+            t_min: S::splat(self.ray.t_min),
+        };
+        let (centers, radii) = (Vec3s::load(&block.centers), S::load(&block.radii));
+        if let Some(crossing) = kernel::sphere(&plain, centers, radii, S::splat(enter), S::splat(self.best.t)) {
+            crossing.improve(&mut self.best, &block.ids, self.ray.skip);
+        }
     }
+}
+
+/// Eight corners.
+#[inline(always)]
+fn load_turned<S: Simd>(rows: &[[f32; 8]; 3], [i, j, k]: [usize; 3]) -> Vec3s<S> {
+    Vec3s { x: S::load(&rows[i]), y: S::load(&rows[j]), z: S::load(&rows[k]) }
 }
 
 /// What happens at the leaf of an instance. (A trait and not a closure: a closure is compiled without the instruction
 /// set of the function it stands in, and would call every intrinsic out of line.)
-trait Instances {
-    fn enter<S: Simd>(&mut self, leaf: &InstanceLeaf, enter: f32, best: &mut Hit);
+pub(super) trait Instances {
+    fn enter<S: Simd>(&mut self, tree: &Tree, leaf: &InstanceLeaf, enter: f32, ray: &Ray, best: &mut Hit);
 }
 
 /// Goes on in the instance's own tree.
-struct Nested<'a, const ANY: bool> {
-    tree: &'a Tree,
-    ray: &'a Ray,
-    stack: &'a mut Stack,
+pub(super) struct Nested<'a> {
+    pub flight: &'a mut Flight,
+    /// Whether anything that is met will do.
+    pub any: bool,
 }
 
-impl<const ANY: bool> Instances for Nested<'_, ANY> {
+impl Instances for Nested<'_> {
     #[inline(always)]
-    fn enter<S: Simd>(&mut self, leaf: &InstanceLeaf, enter: f32, best: &mut Hit) {
+    fn enter<S: Simd>(&mut self, tree: &Tree, leaf: &InstanceLeaf, enter: f32, ray: &Ray, best: &mut Hit) {
         // Hits as far as the best so far may still win by their object.
-        let mut found = Hit { t: best.t.next_up(), ..Hit::NONE };
-        let root = (0.0, leaf.root);
-        self.tree.walk::<S, ANY>(
-            root,
-            &leaf.localize(self.ray, &self.tree.motions),
-            self.stack,
-            &mut found,
-            &mut NoInstances,
-        );
+        let farthest = Hit { t: best.t.next_up(), ..Hit::NONE };
+        self.flight.begin::<S>(leaf.localize(ray, &tree.motions), (0.0, leaf.root), farthest);
+        self.flight.fly::<S>(tree, self.any, &mut NoInstances);
+        let found = self.flight.best;
         if found.id != Id::NONE {
             best.improve(Hit { t: found.t.max(enter), id: Id { object: leaf.object, ..found.id }, ..found });
         }
@@ -252,28 +351,7 @@ struct NoInstances;
 
 impl Instances for NoInstances {
     #[inline(always)]
-    fn enter<S: Simd>(&mut self, _: &InstanceLeaf, _: f32, _: &mut Hit) {}
-}
-
-impl TriangleBlock {
-    #[inline(always)]
-    fn intersect<S: Simd>(&self, lanes: &Lanes<S>, ray: &Ray, enter: f32, best: &mut Hit) {
-        let corners =
-            [Vec3x8::load(&self.vertices[0]), Vec3x8::load(&self.vertices[1]), Vec3x8::load(&self.vertices[2])];
-        if let Some(crossing) = kernel::triangle(lanes, corners, S::splat(enter), S::splat(best.t)) {
-            crossing.improve(best, &self.ids, ray.skip);
-        }
-    }
-}
-
-impl SphereBlock {
-    #[inline(always)]
-    fn intersect<S: Simd>(&self, lanes: &Lanes<S>, ray: &Ray, enter: f32, best: &mut Hit) {
-        let (centers, radii) = (Vec3x8::load(&self.centers), S::load(&self.radii));
-        if let Some(crossing) = kernel::sphere(lanes, centers, radii, S::splat(enter), S::splat(best.t)) {
-            crossing.improve(best, &self.ids, ray.skip);
-        }
-    }
+    fn enter<S: Simd>(&mut self, _: &Tree, _: &InstanceLeaf, _: f32, _: &Ray, _: &mut Hit) {}
 }
 
 impl<S: Simd> Crossing<S> {
