@@ -15,7 +15,7 @@ use crate::environment::{self, Environment};
 use crate::sampler::SampleKey;
 pub(crate) use cornell::Ceiling;
 pub(crate) use fan::{FAN, Fan, Shape};
-pub(crate) use single::{Beam, Lamp, Single};
+pub(crate) use single::{Beam, Lamp, Single, Spot};
 pub(crate) use sphere::Ball;
 use triangle::Seen;
 pub(crate) use triangle::Shining;

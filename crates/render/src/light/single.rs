@@ -8,7 +8,16 @@ use super::Arrival;
 /// at a time.
 pub(crate) trait Single {
     /// What arrives at a point, if nothing is in the way; its irradiance is zero where nothing does.
-    fn reach(&self, point: Vec3) -> Arrival;
+    fn reach(&self, at: &Spot) -> Arrival;
+}
+
+/// A point of a surface that asks for light.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spot {
+    pub point: Vec3,
+    pub normal: Vec3,
+    /// What the form factors of virtual lights count there at most.
+    pub limit: f32,
 }
 
 /// A point that sends its radiant power evenly to all directions.
@@ -29,7 +38,7 @@ pub(crate) struct Beam {
 
 impl Single for Lamp {
     #[inline(always)]
-    fn reach(&self, point: Vec3) -> Arrival {
+    fn reach(&self, &Spot { point, .. }: &Spot) -> Arrival {
         let to = self.position - point;
         let distance2 = to.dot(to);
         let distance = distance2.sqrt();
@@ -41,12 +50,12 @@ impl Single for Lamp {
 
 impl Single for Beam {
     #[inline(always)]
-    fn reach(&self, point: Vec3) -> Arrival {
+    fn reach(&self, &Spot { point, .. }: &Spot) -> Arrival {
         let from = point - self.source;
         let along = from.dot(self.direction);
         let off = from - self.direction * along;
         let within = (along >= 0.0) & (off.dot(off) <= self.radius * self.radius);
-        let irradiance = if within { self.irradiance } else { Vec3::ZERO };
+        let irradiance = self.irradiance * if within { 1.0 } else { 0.0 };
         Arrival { direction: -self.direction, distance: along, irradiance }
     }
 }
@@ -54,7 +63,7 @@ impl Single for Beam {
 /// Parallel light.
 impl Single for Arrival {
     #[inline(always)]
-    fn reach(&self, _: Vec3) -> Arrival {
+    fn reach(&self, _: &Spot) -> Arrival {
         *self
     }
 }

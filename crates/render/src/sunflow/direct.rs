@@ -1,7 +1,6 @@
 //! Light that comes straight from the lights.
 
 use std::iter::repeat_n;
-use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -10,8 +9,8 @@ use super::point::{Point, Which};
 use super::{Queues, Room, Sunflow};
 use crate::clock::Stage;
 use crate::geometry::simd::{self, Simd};
-use crate::geometry::{Geometry, Ids, Ray, Rays, Rows, Scratch};
-use crate::light::{Arrival, FAN, Fan, Light, Receiver, Single};
+use crate::geometry::{Geometry, Ids, Rays, Rows, Scratch};
+use crate::light::{Arrival, FAN, Fan, Light, Receiver, Single, Spot};
 
 /// Rays towards lights, and what arrives if nothing is in the way.
 #[derive(Default)]
@@ -25,13 +24,6 @@ pub(super) struct Shadows {
 impl Shadows {
     /// Shadow rays that are traced together at most, give or take those of one point.
     const FULL: usize = 4096;
-
-    /// Queues a ray that brings `light` to a node.
-    pub fn push(&mut self, ray: Ray, light: Vec3, node: u32) {
-        self.rays.push(ray);
-        self.light.push(light);
-        self.nodes.push(node);
-    }
 
     /// Queues what is kept of a fan from one point, by whose path it goes on.
     pub fn push_fan(&mut self, fan: &Fan, kept: &Kept, point: &Point<'_>) {
@@ -134,7 +126,9 @@ pub(super) struct Waiting {
     front: Rows,
     normal: Rows,
     geometric: Rows,
-    even: Rows,
+    /// What they make of light.
+    value: Rows,
+    limit: Vec<f32>,
     skip: Ids,
     node: Vec<u32>,
     /// Empty where nothing moves.
@@ -142,24 +136,30 @@ pub(super) struct Waiting {
 }
 
 impl Waiting {
-    /// Some of the surfaces, in an order.
-    fn fill(&mut self, lit: &[Lit<'_>], some: impl Iterator<Item = u32>) {
-        let Waiting { order, front, normal, geometric, even, skip, node, time } = self;
-        [&mut *front, normal, geometric, even].into_iter().for_each(Rows::clear);
+    /// Some of the surfaces, in an order, with what they make of light and what limits it.
+    fn fill(&mut self, lit: &[Lit<'_>], some: impl Iterator<Item = u32>, value: impl Fn(&Lit<'_>) -> (Vec3, f32)) {
+        let Waiting { order, front, normal, geometric, value: values, limit: limits, skip, node, time } = self;
+        [&mut *front, normal, geometric, values].into_iter().for_each(Rows::clear);
         [&mut *order, node].into_iter().for_each(Vec::clear);
+        [&mut *limits, time].into_iter().for_each(Vec::clear);
         skip.clear();
-        time.clear();
         order.extend(some);
         for lit in order.iter().map(|&i| &lit[i as usize]) {
-            let point = &lit.point;
+            let (point, (value, limit)) = (&lit.point, value(lit));
             front.push(point.front);
             normal.push(point.surface.normal);
             geometric.push(point.surface.geometric);
-            even.push(lit.even());
+            values.push(value);
+            limits.push(limit);
             skip.push(point.skip);
             node.push(point.path.node);
             time.extend(point.hit.time);
         }
+    }
+
+    /// All surfaces, as they are.
+    fn fill_all(&mut self, lit: &[Lit<'_>]) {
+        self.fill(lit, 0..lit.len() as u32, |lit| (lit.even(), f32::INFINITY));
     }
 }
 
@@ -192,9 +192,9 @@ impl Kept {
 
 /// Whether light that comes from a direction falls onto the front of a surface, and what that makes of it.
 #[inline(always)]
-fn fall(direction: Vec3, irradiance: Vec3, [normal, geometric, even]: [Vec3; 3]) -> (bool, Vec3) {
+fn fall(direction: Vec3, irradiance: Vec3, [normal, geometric, value]: [Vec3; 3]) -> (bool, Vec3) {
     let cosine = direction.dot(normal);
-    let light = even * irradiance * cosine;
+    let light = value * irradiance * cosine;
     let some = (light.x != 0.0) | (light.y != 0.0) | (light.z != 0.0);
     ((cosine > 0.0) & (direction.dot(geometric) > 0.0) & some, light)
 }
@@ -224,7 +224,7 @@ impl simd::Kernel for Fall<'_> {
 
 /// What surfaces that wait, from `first` on, make of a light.
 struct Reach<'a, L> {
-    light: &'a L,
+    light: L,
     waiting: &'a Waiting,
     first: usize,
     fan: &'a mut Fan,
@@ -237,22 +237,26 @@ impl<L: Single> simd::Kernel for Reach<'_, L> {
     fn run<S: Simd>(self) -> Kept {
         let Reach { light, waiting, first, fan } = self;
         let size = (waiting.node.len() - first).min(FAN);
-        fan.size = size;
         let [px, py, pz] = waiting.front.part(first, size);
         let [nx, ny, nz] = waiting.normal.part(first, size);
         let [gx, gy, gz] = waiting.geometric.part(first, size);
-        let [er, eg, eb] = waiting.even.part(first, size);
-        let ([x, y, z], [red, green, blue]) = (&mut fan.direction, &mut fan.irradiance);
+        let [vr, vg, vb] = waiting.value.part(first, size);
+        let limit = &waiting.limit[first..][..size];
+        // Written aside, where the compiler sees that it is none of what is read.
+        let mut arrivals = Fan { size, ..Fan::default() };
+        let ([x, y, z], [red, green, blue]) = (&mut arrivals.direction, &mut arrivals.irradiance);
         let mut is_kept = [false; FAN];
         for i in 0..size {
             let (normal, geometric) = (Vec3::new(nx[i], ny[i], nz[i]), Vec3::new(gx[i], gy[i], gz[i]));
-            let Arrival { direction, distance, irradiance } = light.reach(Vec3::new(px[i], py[i], pz[i]));
+            let spot = Spot { point: Vec3::new(px[i], py[i], pz[i]), normal, limit: limit[i] };
+            let Arrival { direction, distance, irradiance } = light.reach(&spot);
             let light;
-            (is_kept[i], light) = fall(direction, irradiance, [normal, geometric, Vec3::new(er[i], eg[i], eb[i])]);
+            (is_kept[i], light) = fall(direction, irradiance, [normal, geometric, Vec3::new(vr[i], vg[i], vb[i])]);
             (x[i], y[i], z[i]) = (direction.x, direction.y, direction.z);
-            fan.distance[i] = distance;
+            arrivals.distance[i] = distance;
             (red[i], green[i], blue[i]) = (light.x, light.y, light.z);
         }
+        *fan = arrivals;
         Kept::among(&is_kept, size)
     }
 }
@@ -260,15 +264,20 @@ impl<L: Single> simd::Kernel for Reach<'_, L> {
 impl Sunflow {
     /// Direct light on surfaces, one light after the other, so that the rays towards it go together.
     pub(super) fn illuminate(&self, geometry: &Geometry, lit: &[Lit<'_>], room: &mut Room, queues: &mut Queues<Vec3>) {
-        room.waiting.fill(lit, 0..lit.len() as u32);
+        room.waiting.fill_all(lit);
         for (light, number) in self.lights.iter().zip(0..) {
             match light {
-                Light::Point(lamp) => shine(lamp, geometry, lit, room, queues),
-                Light::Directional(beam) => shine(beam, geometry, lit, room, queues),
-                Light::Sun(sun) => shine(sun, geometry, lit, room, queues),
+                Light::Point(lamp) => shine(*lamp, geometry, lit, room, queues),
+                Light::Directional(beam) => shine(*beam, geometry, lit, room, queues),
+                Light::Sun(sun) => shine(*sun, geometry, lit, room, queues),
                 Light::Beams(beams) => {
-                    shine_in_turn(beams, geometry, lit, room, queues);
-                    room.waiting.fill(lit, 0..lit.len() as u32);
+                    let list = |lit: &Lit<'_>| usize::from(lit.point.path.depth.diffuse > 0);
+                    let value = |lit: &Lit<'_>| (lit.even(), f32::INFINITY);
+                    in_turn(beams, lit, list, value, room, |beam, share, room| {
+                        let beam = Arrival { irradiance: beam.irradiance * share, ..*beam };
+                        shine(beam, geometry, lit, room, queues);
+                    });
+                    room.waiting.fill_all(lit);
                 }
                 _ => {
                     let Room { fan, shadows, scratch, .. } = room;
@@ -296,41 +305,49 @@ impl Sunflow {
     }
 }
 
-/// Light that comes to every surface that waits from one direction.
-fn shine(light: &impl Single, geometry: &Geometry, lit: &[Lit<'_>], room: &mut Room, queues: &mut Queues<Vec3>) {
+/// Light that comes to every surface that waits from one direction. Coats are those of `coats`, or none.
+pub(super) fn shine(
+    light: impl Single + Copy,
+    geometry: &Geometry,
+    coats: &[Lit<'_>],
+    room: &mut Room,
+    queues: &mut Queues<Vec3>,
+) {
     let Room { waiting, fan, shadows, scratch, .. } = room;
     for first in (0..waiting.node.len()).step_by(FAN) {
         let kept = simd::run(Reach { light, waiting, first, fan });
         for &i in kept.indices() {
-            lit[waiting.order[first + usize::from(i)] as usize].gloss(fan, usize::from(i));
+            if let Some(lit) = coats.get(waiting.order[first + usize::from(i)] as usize) {
+                lit.gloss(fan, usize::from(i));
+            }
         }
         shadows.push_sheaf(fan, &kept, waiting, first);
         shadows.flush(geometry, queues, scratch);
     }
 }
 
-/// Beams, of which the samples of a pixel take one each in turn.
-fn shine_in_turn(
-    beams: &[Arc<[Arrival]>; 2],
-    geometry: &Geometry,
+/// Lights that all surfaces have in common, of which the samples of a pixel take one each in turn, and so many times as
+/// much of it: `list` says which list a surface takes them from. `shine` is called with the surfaces that take a light waiting.
+pub(super) fn in_turn<L>(
+    lists: &[impl AsRef<[L]>],
     lit: &[Lit<'_>],
+    list: impl Fn(&Lit<'_>) -> usize,
+    value: impl Fn(&Lit<'_>) -> (Vec3, f32),
     room: &mut Room,
-    queues: &mut Queues<Vec3>,
+    mut shine: impl FnMut(&L, f32, &mut Room),
 ) {
     let group = |lit: &Lit<'_>| {
-        let Point { path, key, of, .. } = &lit.point;
-        let indirect = path.depth.diffuse > 0;
-        let share = (*of as usize).clamp(1, beams[usize::from(indirect)].len().max(1));
-        (indirect, share, key.index as usize % share)
+        let (list, point) = (list(lit), &lit.point);
+        let share = (point.of as usize).clamp(1, lists[list].as_ref().len().max(1));
+        (list, share, point.key.index as usize % share)
     };
     let mut groups: Vec<_> = (0..).zip(lit).map(|(i, lit)| (group(lit), i)).collect();
     groups.sort_unstable();
     for members in groups.chunk_by(|(a, _), (b, _)| a == b) {
-        let (indirect, share, turn) = members[0].0;
-        room.waiting.fill(lit, members.iter().map(|&(_, i)| i));
-        for beam in beams[usize::from(indirect)].iter().skip(turn).step_by(share) {
-            let beam = Arrival { irradiance: beam.irradiance * share as f32, ..*beam };
-            shine(&beam, geometry, lit, room, queues);
+        let (list, share, turn) = members[0].0;
+        room.waiting.fill(lit, members.iter().map(|&(_, i)| i), &value);
+        for light in lists[list].as_ref().iter().skip(turn).step_by(share) {
+            shine(light, share as f32, room);
         }
     }
 }

@@ -2,13 +2,13 @@
 
 use glam::Vec3;
 
-use super::direct::Lit;
+use super::direct::{self, Lit};
 use super::photons::{self, Keep, Photon, Senders};
-use super::point::{Point, Which};
-use super::{Queues, Room, Shadows, Sunflow};
+use super::point::Which;
+use super::{Queues, Room, Sunflow};
 use crate::clock::Stage;
 use crate::geometry::{Geometry, Id, Rays};
-use crate::light::BEFORE;
+use crate::light::{Arrival, BEFORE, Single, Spot};
 use crate::math;
 use crate::wave::{Path, RayKind};
 
@@ -32,22 +32,16 @@ impl VirtualLights {
     /// Light of one set on matte surfaces, one virtual light after the other. Of the samples of a pixel each takes its
     /// part of the set.
     pub(super) fn illuminate(&self, geometry: &Geometry, lit: &[Lit<'_>], room: &mut Room, queues: &mut Queues<Vec3>) {
-        let of = |point: &Point<'_>| {
-            let [choice, _] = point.key.pair(point.dimension(Which::Choice));
+        let set = |lit: &Lit<'_>| {
+            let [choice, _] = lit.point.key.pair(lit.point.dimension(Which::Choice));
             ((choice * self.sets.len() as f32) as usize).min(self.sets.len() - 1)
         };
-        let sets: Vec<usize> = lit.iter().map(|lit| of(&lit.point)).collect();
-        for (set, lights) in self.sets.iter().enumerate() {
-            for (number, light) in lights.iter().enumerate() {
-                for (lit, _) in lit.iter().zip(&sets).filter(|&(_, &of)| of == set) {
-                    let share = (lit.point.of.max(1) as usize).min(lights.len());
-                    if number % share == lit.point.key.index as usize % share {
-                        self.add(light, lit, share as f32, &mut room.shadows);
-                    }
-                }
-                room.shadows.flush(geometry, queues, &mut room.scratch);
-            }
-        }
+        let value = |lit: &Lit<'_>| (lit.point.path.weight * lit.color, self.limit(lit.color));
+        direct::in_turn(&self.sets, lit, set, value, room, |light, share, room| {
+            // Sunflow: the quarter is literal (R17).
+            let power = light.power * (0.25 * std::f32::consts::FRAC_1_PI * share);
+            direct::shine(Virtual { point: light.point, normal: light.normal, power }, geometry, &[], room, queues);
+        });
     }
 
     /// What the form factor of a virtual light counts at most on a surface of a colour.
@@ -97,19 +91,31 @@ impl VirtualLights {
             }
         }
     }
+}
 
-    fn add(&self, light: &Photon, lit: &Lit<'_>, share: f32, shadows: &mut Shadows) {
-        let Lit { point, color, .. } = lit;
-        let to = light.point - point.front;
-        let distance2 = to.length_squared();
+/// A virtual light.
+#[derive(Clone, Copy)]
+struct Virtual {
+    point: Vec3,
+    normal: Vec3,
+    power: Vec3,
+}
+
+impl Single for Virtual {
+    #[inline(always)]
+    fn reach(&self, at: &Spot) -> Arrival {
+        let to = self.point - at.point;
+        let distance2 = to.dot(to);
         let distance = distance2.sqrt();
         let direction = to / distance;
-        let (here, there) = (direction.dot(point.surface.normal), -direction.dot(light.normal));
-        if here > 0.0 && there > 0.0 && direction.dot(point.surface.geometric) > 0.0 {
-            let form = (here * there / distance2).min(self.limit(*color));
-            // Sunflow: the quarter is literal (R17).
-            let brings = point.path.weight * *color * light.power * (0.25 * std::f32::consts::FRAC_1_PI * form * share);
-            shadows.push(point.toward(direction, distance * BEFORE), brings, point.path.node);
+        let (here, there) = (direction.dot(at.normal), -direction.dot(self.normal));
+        // The form factor without the cosine at the point, by which what arrives is multiplied.
+        let (form, limit) = (there / distance2, at.limit / here);
+        let form = if form < limit { form } else { limit };
+        Arrival {
+            direction,
+            distance: distance * BEFORE,
+            irradiance: self.power * if there > 0.0 { form } else { 0.0 },
         }
     }
 }
