@@ -19,11 +19,11 @@ const SAH_DEPTH: u32 = 48;
 /// Depth that no tree exceeds; the traversal's stack is sized by it.
 pub(crate) const MAX_DEPTH: usize = SAH_DEPTH as usize + 32;
 /// Primitives of a treelet, at most.
-const TREELET: usize = 4096;
+const TREELET: usize = 1024;
 /// Treelets that are built at a time, so that no more than these wait for their place.
-const BATCH: usize = 64;
+const BATCH: usize = 256;
 /// Ranges longer than this are counted in pieces of this length by all threads.
-const PIECE: usize = 1 << 15;
+const PIECE: usize = 1 << 13;
 
 /// A primitive of the builder: its box, and its index as two halves in the fourth components.
 #[derive(Debug, Clone, Copy)]
@@ -40,6 +40,11 @@ impl Item {
         (self.0.max.w as u32) << 16 | self.0.min.w as u32
     }
 
+    pub fn is_finite(&self) -> bool {
+        self.0.min.is_finite() && self.0.max.is_finite()
+    }
+
+    #[inline(always)]
     fn center(&self) -> Vec4 {
         // Halves first: the sum of two large coordinates may overflow.
         self.0.min * 0.5 + self.0.max * 0.5
@@ -122,6 +127,13 @@ struct Binning {
 type Bin = (Extent, u32);
 type Bins = [[Bin; BINS]; 3];
 
+const NO_BIN: Bin = (Extent::EMPTY, 0);
+
+#[inline(always)]
+fn add(bin: &mut Bin, item: &Item) {
+    *bin = (bin.0.union(item.0), bin.1 + 1);
+}
+
 impl Binning {
     fn new(centers: Extent, items: usize) -> Binning {
         let count = (4 + items / 16).min(BINS);
@@ -140,29 +152,58 @@ impl Binning {
         [(at.x as i32 as usize).min(last), (at.y as i32 as usize).min(last), (at.z as i32 as usize).min(last)]
     }
 
-    fn fill(&self, items: &[Item]) -> Bins {
-        let mut bins = [[(Extent::EMPTY, 0u32); BINS]; 3];
+    /// Sorts items into as many bins as there are; the others keep what they hold.
+    fn fill(&self, items: &[Item], bins: &mut Bins) {
+        bins.iter_mut().for_each(|bins| bins[..self.count].fill(NO_BIN));
         for item in items {
-            for (bins, at) in bins.iter_mut().zip(self.bins(item)) {
-                let slot = &mut bins[at & (BINS - 1)];
-                *slot = (slot.0.union(item.0), slot.1 + 1);
-            }
+            let [x, y, z] = self.bins(item);
+            add(&mut bins[0][x % BINS], item);
+            add(&mut bins[1][y % BINS], item);
+            add(&mut bins[2][z % BINS], item);
         }
-        bins
     }
 
-    fn fill_by_all(&self, items: &[Item]) -> Bins {
+    /// The same on all threads where there are many.
+    fn fill_by_all(&self, items: &[Item], bins: &mut Bins) {
         if items.len() <= PIECE {
-            return self.fill(items);
+            return self.fill(items, bins);
         }
+        let count = |items: &[Item]| {
+            let mut bins = [[NO_BIN; BINS]; 3];
+            self.fill(items, &mut bins);
+            bins
+        };
         let merge = |mut a: Bins, b: Bins| {
             for (a, b) in a.iter_mut().flatten().zip(b.into_iter().flatten()) {
                 *a = (a.0.union(b.0), a.1 + b.1);
             }
             a
         };
-        let empty = || [[(Extent::EMPTY, 0u32); BINS]; 3];
-        items.par_chunks(PIECE).map(|items| self.fill(items)).reduce(empty, merge)
+        *bins = items.par_chunks(PIECE).map(count).reduce(|| [[NO_BIN; BINS]; 3], merge);
+    }
+
+    /// Sorts items into those up to the last bin of the left side and the others; returns how many are on the left, and the
+    /// boxes around the centres of both sides.
+    fn part(&self, items: &mut [Item], axis: usize, last: usize) -> (usize, [Extent; 2]) {
+        let component = |v: Vec4| v.to_array()[axis % 4];
+        let (origin, scale, limit) = (component(self.origin), component(self.scale), (last + 1) as f32);
+        let (mut left, mut right, mut middle) = (Extent::EMPTY, Extent::EMPTY, 0);
+        for i in 0..items.len() {
+            let item = items[i];
+            let at = (component(item.0.min) * 0.5 + component(item.0.max) * 0.5 - origin) * scale;
+            let is_left = at < limit;
+            // Every item changes places with the first of the right side, and is taken into both boxes, but into the wrong
+            // one from infinitely far: that takes no guess of the processor's.
+            items.swap(i, middle);
+            middle += usize::from(is_left);
+            let (off_left, off_right) = if is_left { (0.0, f32::INFINITY) } else { (f32::INFINITY, 0.0) };
+            let center = item.center();
+            left.min = left.min.min(center + off_left);
+            left.max = left.max.max(center - off_left);
+            right.min = right.min.min(center + off_right);
+            right.max = right.max.max(center - off_right);
+        }
+        (middle, [left, right])
     }
 
     /// The axis and the last bin of the left side of the cheapest split.
@@ -203,22 +244,20 @@ fn cheapest_split(bins: &[Bin]) -> (f32, usize) {
 
 /// Sorts `items` into two sides by the cheapest of all binned splits, and returns how many are on the left, and the covers of
 /// both sides. Where no split separates anything, or where the tree is deep, they are halved as they lie.
-fn split(items: &mut [Item], cover: &Cover, depth: u32) -> (usize, [Cover; 2]) {
+fn split(items: &mut [Item], cover: &Cover, depth: u32, bins: &mut Bins) -> (usize, [Cover; 2]) {
     let binning = Binning::new(cover.centers, items.len());
-    let best = if depth < SAH_DEPTH && items.len() > 2 { binning.cheapest(&binning.fill_by_all(items)) } else { None };
+    let mut best = None;
+    if depth < SAH_DEPTH && items.len() > 2 {
+        binning.fill_by_all(items, bins);
+        best = binning.cheapest(bins);
+    }
     if let Some((axis, last)) = best {
-        let mut sides = [Cover::EMPTY; 2];
-        let mut middle = 0;
-        for i in 0..items.len() {
-            // Every item changes places with the first of the right side: that takes no guess of the processor's.
-            items.swap(i, middle);
-            let item = &items[middle];
-            let left = binning.bins(item)[axis] <= last;
-            sides[usize::from(!left)].add(item);
-            middle += usize::from(left);
-        }
+        let (middle, centers) = binning.part(items, axis, last);
         if middle > 0 && middle < items.len() {
-            return (middle, sides);
+            let union = |bins: &[Bin]| bins.iter().fold(Extent::EMPTY, |all, bin| all.union(bin.0));
+            let (left, right) = bins[axis][..binning.count].split_at(last + 1);
+            let [left, right] = [(union(left), centers[0]), (union(right), centers[1])];
+            return (middle, [left, right].map(|(bounds, centers)| Cover { bounds, centers }));
         }
     }
     let middle = items.len() / 2;
@@ -286,7 +325,7 @@ fn top_down(items: &mut [Item], range: Range<usize>, cover: &Cover, depth: u32, 
     if range.len() <= TREELET {
         return;
     }
-    let (middle, [left_cover, right_cover]) = split(items, cover, depth);
+    let (middle, [left_cover, right_cover]) = split(items, cover, depth, &mut [[NO_BIN; BINS]; 3]);
     let (left, right) = items.split_at_mut(middle);
     let middle = range.start + middle;
     let (mut a, mut b) = (Vec::new(), Vec::new());
@@ -313,7 +352,7 @@ impl<B> Treelet<B> {
     fn build(items: &mut [Item], depth: u32, (kind, leaf_size): (Kind, usize), block: &impl Fn(&[Item]) -> B) -> Self {
         let mut binary = Vec::with_capacity(2 * items.len());
         let cover = Cover::of(items);
-        descend(items, 0, &cover, depth, &mut binary);
+        descend(items, 0, (&cover, depth), leaf_size.min(2), &mut [[NO_BIN; BINS]; 3], &mut binary);
         let (mut nodes, mut blocks) = (Vec::new(), Vec::new());
         let root = collapse(&binary, leaf_size, &mut nodes, &mut |range| {
             blocks.push(block(&items[range]));
@@ -333,16 +372,23 @@ impl<B> Treelet<B> {
     }
 }
 
-/// Splits a range down to single items.
-fn descend(items: &mut [Item], first: u32, cover: &Cover, depth: u32, binary: &mut Vec<Binary>) -> u32 {
+/// Splits a range until no part is longer than `least`. (Pairs that fit a leaf are as good as single items, and half as many.)
+fn descend(
+    items: &mut [Item],
+    first: u32,
+    (cover, depth): (&Cover, u32),
+    least: usize,
+    bins: &mut Bins,
+    binary: &mut Vec<Binary>,
+) -> u32 {
     let at = binary.len();
     let content = Content::Items { first, count: items.len() as u32 };
     binary.push(Binary { bounds: cover.bounds, depth, content });
-    if items.len() > 1 {
-        let (middle, [left_cover, right_cover]) = split(items, cover, depth);
+    if items.len() > least {
+        let (middle, [left_cover, right_cover]) = split(items, cover, depth, bins);
         let (left, right) = items.split_at_mut(middle);
-        let left = descend(left, first, &left_cover, depth + 1, binary);
-        let right = descend(right, first + middle as u32, &right_cover, depth + 1, binary);
+        let left = descend(left, first, (&left_cover, depth + 1), least, bins, binary);
+        let right = descend(right, first + middle as u32, (&right_cover, depth + 1), least, bins, binary);
         binary[at].content = Content::Children([left, right]);
     }
     at as u32

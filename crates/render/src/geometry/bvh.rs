@@ -24,6 +24,15 @@ impl Aabb {
         Aabb { min: self.min.min(p), max: self.max.max(p) }
     }
 
+    /// A box that is a little larger: what holds for points within a few roundings of this one's size holds in it.
+    pub fn padded(self) -> Aabb {
+        let pad = Vec3::splat((self.max - self.min).max_element() * (2.0 * f32::EPSILON));
+        let (min, max) = (self.min - pad, self.max + pad);
+        // Where a rounding of the coordinates is more than that, it is one of them.
+        let (down, up) = (self.min.map(f32::next_down), self.max.map(f32::next_up));
+        Aabb { min: min.min(down), max: max.max(up) }
+    }
+
     fn center(self) -> Vec3 {
         // Halves first: the sum of two large coordinates may overflow.
         self.min * 0.5 + self.max * 0.5
@@ -131,12 +140,18 @@ pub(crate) struct Node {
 
 /// Which components of a direction are negative, as the bits x, y and z.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Octant(u32);
+pub(crate) struct Octant(pub u32);
 
 impl Octant {
     #[inline(always)]
     pub fn new([x, y, z]: [bool; 3]) -> Octant {
         Octant(u32::from(x) | u32::from(y) << 1 | u32::from(z) << 2)
+    }
+
+    /// Which [`Node::sides`] its rays cross first.
+    #[inline(always)]
+    pub fn sides(self) -> Sides {
+        Sides([self.0 & 1, 2 + (self.0 >> 1 & 1), 4 + (self.0 >> 2 & 1)])
     }
 
     /// Where the octant's slots lie in [`Node::order`].
@@ -149,13 +164,6 @@ impl Octant {
 /// Which of [`Node::sides`] rays of an octant cross first, by axis; opposite to each lies the one with the last bit turned.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sides(pub [u32; 3]);
-
-impl Sides {
-    #[inline(always)]
-    pub fn new([x, y, z]: [bool; 3]) -> Sides {
-        Sides([u32::from(x), 2 + u32::from(y), 4 + u32::from(z)])
-    }
-}
 
 impl Node {
     /// The sides of all children that are crossed first.

@@ -295,9 +295,10 @@ impl simd::Kernel for Closest<'_> {
         for start in (0..rays.len()).step_by(S::Wide::COUNT) {
             let mut packet = Packet::<S::Wide>::new(rays, start, false);
             packet.planes(&geometry.planes);
-            match packet.way::<S>() {
+            let heading = packet.heading();
+            match packet.way::<S>(&heading) {
                 Some(way) => packet.walk(&geometry.tree, &way, stack, [&mut flights[0], inner]),
-                None => packet.scatter(scattered),
+                None => packet.scatter(&heading, scattered),
             }
             packet.store(hits);
         }
@@ -325,9 +326,10 @@ impl simd::Kernel for Occluded<'_> {
             let mut packet = Packet::<S::Wide>::new(rays, start, true);
             packet.planes(&geometry.planes);
             if !packet.is_dead() {
-                match packet.way::<S>() {
+                let heading = packet.heading();
+                match packet.way::<S>(&heading) {
                     Some(way) => packet.walk(&geometry.tree, &way, stack, [&mut flights[0], inner]),
-                    None => packet.scatter(scattered),
+                    None => packet.scatter(&heading, scattered),
                 }
             }
             packet.store_blocked(blocked);

@@ -7,11 +7,14 @@ use super::bvh::{Aabb, Child, Kind, Node, Octant, Sides};
 use super::kernel::{self, Crossing, Inverse, Plain, Shear, Slab};
 use super::rays::{Hits, RayView, group, group_bits};
 use super::simd::{Lanes, Simd, Vec3s};
-use super::traverse::{Flight, Nested, STACK, SphereBlock, Tree, TriangleBlock};
+use super::traverse::{Course, Flight, Nested, STACK, SphereBlock, Tree, TriangleBlock};
 use super::{Hit, Id, PlaneShape};
 
 /// So few rays go on one by one: alone they test eight boxes in the time in which a packet tests one or two.
 const FEW: u32 = 1;
+
+/// So few rays meet the triangles of a leaf one by one, eight triangles at a time.
+const SOME: u32 = 5;
 
 /// Where a packet goes on later: children, each as its node and its slot there, where the packet's hull enters them, and
 /// which rays may.
@@ -69,6 +72,14 @@ impl<L: Lanes> Names<L> {
     fn select(mask: u32, yes: Self, no: Self) -> Self {
         Names { object: L::select(mask, yes.object, no.object), index: L::select(mask, yes.index, no.index) }
     }
+}
+
+/// Which rays of a packet go where, as masks.
+pub(super) struct Heading {
+    /// By axis: down it.
+    negative: [u32; 3],
+    /// Mostly along the first axis, and mostly along the second.
+    longest: [u32; 2],
 }
 
 /// What a packet that goes one way needs besides: directions of the same signs, and the same dominant axis.
@@ -140,11 +151,31 @@ impl<'a, L: Lanes> Packet<'a, L> {
 
     /// Leaves the rays that look for something to whoever traces them one by one.
     #[inline(always)]
-    pub fn scatter(&self, scattered: &mut Vec<u32>) {
+    pub fn scatter(&self, heading: &Heading, scattered: &mut Vec<(u32, Course)>) {
+        let (first, second) = (heading.longest[0], heading.longest[1]);
+        let inverse = Inverse::new(self.direction);
+        let Vec3s { x, y, z } = self.direction;
+        let longest = L::select(first, x, L::select(second, y, z));
+        let i = L::select(first, y, L::select(second, z, x)).div(longest).store();
+        let j = L::select(first, z, L::select(second, x, y)).div(longest).store();
+        let scale = L::splat(1.0).div(longest).store();
+        let ([ex, ey, ez], [lx, ly, lz]) = (inverse.enter.store(), inverse.leave.store());
+        let (i, j, scale, ex, ey, ez) = (i.as_ref(), j.as_ref(), scale.as_ref(), ex.as_ref(), ey.as_ref(), ez.as_ref());
+        let (lx, ly, lz) = (lx.as_ref(), ly.as_ref(), lz.as_ref());
+        let [sx, sy, sz] = heading.negative;
         let mut rest = self.alive;
         while rest != 0 {
-            scattered.push(self.start as u32 + rest.trailing_zeros());
+            let k = rest.trailing_zeros() as usize % L::COUNT;
             rest &= rest - 1;
+            let course = Course {
+                enter: [ex[k], ey[k], ez[k]],
+                leave: [lx[k], ly[k], lz[k]],
+                slope: [i[k], j[k]],
+                scale: scale[k],
+                octant: Octant((sx >> k & 1) | (sy >> k & 1) << 1 | (sz >> k & 1) << 2),
+                dominant: 2 - 2 * (first >> k & 1) - (second >> k & 1),
+            };
+            scattered.push(((self.start + k) as u32, course));
         }
     }
 
@@ -157,34 +188,43 @@ impl<'a, L: Lanes> Packet<'a, L> {
         Hit { t: t.as_ref()[i], u: u.as_ref()[i], v: v.as_ref()[i], id, time: None }
     }
 
-    /// `None` if the rays do not go one way.
+    /// Which way each ray goes.
     #[inline(always)]
-    pub fn way<S: Simd>(&self) -> Option<Way<L, S>> {
+    pub fn heading(&self) -> Heading {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let Vec3s { x, y, z } = self.direction;
         // A zero has a sign too.
-        let signs = [one.copysign(x).lt(zero), one.copysign(y).lt(zero), one.copysign(z).lt(zero)];
-        if signs.iter().any(|&signs| signs != 0 && signs != L::ALL) {
-            return None;
-        }
+        let negative = [one.copysign(x).lt(zero), one.copysign(y).lt(zero), one.copysign(z).lt(zero)];
         let (x, y, z) = (x.max(zero.sub(x)), y.max(zero.sub(y)), z.max(zero.sub(z)));
-        let dominant = match (y.le(x) & z.le(x), z.le(y)) {
-            (first, _) if first == L::ALL => 0,
-            (0, second) if second == L::ALL => 1,
-            (0, 0) => 2,
+        let first = y.le(x) & z.le(x);
+        Heading { negative, longest: [first, z.le(y) & !first] }
+    }
+
+    /// `None` if the rays do not go one way.
+    #[inline(always)]
+    pub fn way<S: Simd>(&self, heading: &Heading) -> Option<Way<L, S>> {
+        let [x, y, z] = heading.negative;
+        let dominant = match heading.longest {
+            [first, 0] if first == L::ALL => 0,
+            [0, second] if second == L::ALL => 1,
+            [0, 0] => 2,
             _ => return None,
         };
+        if (x != 0 && x != L::ALL) || (y != 0 && y != L::ALL) || (z != 0 && z != L::ALL) {
+            return None;
+        }
         let inverse = Inverse::new(self.direction);
         let turned = kernel::turned(dominant);
         let (origin, direction) = (self.origin.turned(turned), self.direction.turned(turned));
         let slope = (direction.x.div(direction.z), direction.y.div(direction.z));
         let scale = L::splat(1.0).div(direction.z);
-        let negative = signs.map(|signs| signs != 0);
+        let negative = [x != 0, y != 0, z != 0];
+        let octant = Octant::new(negative);
         Some(Way {
             shear: Shear { origin, slope, scale, t_min: self.t_min },
             turned,
-            sides: Sides::new(negative),
-            octant: Octant::new(negative),
+            sides: octant.sides(),
+            octant,
             hull: Hull::around(self.origin, &inverse, negative),
             slab: Slab { origin: self.origin, inverse },
         })
@@ -251,6 +291,9 @@ impl<'a, L: Lanes> Packet<'a, L> {
         flights: [&mut Flight; 2],
     ) {
         match child.kind() {
+            Kind::Triangles if active.count_ones() <= SOME => {
+                self.triangles_alone(&tree.triangles[child.index()], way, active, near);
+            }
             Kind::Triangles => self.triangles(&tree.triangles[child.index()], way, active, near),
             Kind::Spheres => self.spheres(&tree.spheres[child.index()], active, near),
             Kind::Instance | Kind::Analytic => self.alone::<S>(tree, child, active, near, flights),
@@ -272,6 +315,38 @@ impl<'a, L: Lanes> Packet<'a, L> {
             ];
             if let Some(crossing) = kernel::triangle(&way.shear, corners, near, self.t) {
                 self.improve(crossing, active, id);
+            }
+        }
+    }
+
+    /// The same, ray by ray with eight triangles at a time.
+    #[inline(always)]
+    fn triangles_alone<S: Simd>(&mut self, block: &TriangleBlock, way: &Way<L, S>, active: u32, near: L) {
+        let Shear { origin, slope, scale, .. } = way.shear;
+        let (near, scale, t) = (near.store(), scale.store(), self.t.store());
+        let ([x, y, z], i, j) = (origin.store(), slope.0.store(), slope.1.store());
+        let t_min = S::splat(self.rays.t_min);
+        let mut rest = active;
+        while rest != 0 {
+            let k = rest.trailing_zeros() as usize % L::COUNT;
+            rest &= rest - 1;
+            let shear = Shear {
+                origin: Vec3s::of([x.as_ref()[k], y.as_ref()[k], z.as_ref()[k]]),
+                slope: (S::splat(i.as_ref()[k]), S::splat(j.as_ref()[k])),
+                scale: S::splat(scale.as_ref()[k]),
+                t_min,
+            };
+            let skip = if self.leaving >> k & 1 != 0 { self.rays.skip.get(self.start + k) } else { Id::NONE };
+            let t = t.as_ref()[k];
+            let Some(crossing) = block.cross(&shear, way.turned, near.as_ref()[k], t) else { continue };
+            let mut hit = self.hit(k);
+            let known = hit.id;
+            crossing.improve(&mut hit, &block.ids, skip);
+            if hit.id == known {
+            } else if self.any {
+                self.alive &= !(1 << k);
+            } else {
+                self.set(1 << k, [L::splat(hit.t), L::splat(hit.u), L::splat(hit.v)], hit.id);
             }
         }
     }
@@ -300,7 +375,8 @@ impl<'a, L: Lanes> Packet<'a, L> {
             let i = rest.trailing_zeros() as usize % L::COUNT;
             rest &= rest - 1;
             let known = self.hit(i);
-            flight.begin::<S>(self.rays.get(self.start + i), (near.as_ref()[i], child), known);
+            let ray = self.rays.get(self.start + i);
+            flight.begin(ray, Course::new::<S>(ray.direction), (near.as_ref()[i], child), known);
             flight.fly::<S>(tree, self.any, &mut Nested { flight: &mut *inner, any: self.any });
             let hit = flight.best;
             if hit.id == known.id {
@@ -404,7 +480,8 @@ impl<L: Lanes, S: Simd> Way<L, S> {
         let (Some(near), Some(places), Some(masks)) = room else { unreachable!("the stack has room for eight more") };
         *masks = [active; 8];
         let slots = [at, at | 1, at | 2, at | 3, at | 4, at | 5, at | 6, at | 7];
-        top + enter.pack(leave.min(S::splat(farthest)), &node.order, self.octant.shift(), &slots, near, places)
+        let limit = leave.min(S::splat(farthest));
+        top + enter.pack(limit, &node.order, self.octant.shift(), &slots, near, places)
     }
 
     /// Where the rays enter and leave one child of a node.

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec3, Vec4};
+use rayon::prelude::*;
 
 use super::analytic::{Analytic, Leaf, Leaves};
 use super::build::{Item, build};
@@ -279,18 +280,19 @@ impl Builder {
         let meshes: Vec<_> = meshes.collect();
         // Where each mesh's triangles start in the builder's numbering.
         let mut starts = Vec::with_capacity(meshes.len());
-        let mut items = Vec::new();
+        let mut items = Vec::with_capacity(meshes.iter().map(|(mesh, _)| mesh.triangles.len()).sum());
         let mut next = 0u32;
         for (mesh, _) in &meshes {
             starts.push(next);
-            for triangle in &mesh.triangles {
-                let bounds = Aabb::around(triangle.map(|i| mesh.points[i as usize]));
-                if bounds.is_finite() {
-                    items.push(Item::new(bounds, next));
-                }
-                next += 1;
-            }
+            let item = |(triangle, index): (&[u32; 3], u32)| {
+                // The shear moves corners by roundings of the triangle's size.
+                Item::new(Aabb::around(triangle.map(|i| mesh.points[i as usize])).padded(), index)
+            };
+            let last = next + mesh.triangles.len() as u32;
+            items.par_extend(mesh.triangles.par_iter().zip(next..last).map(item));
+            next = last;
         }
+        items.retain(Item::is_finite);
         build(items, (Kind::Triangles, 8), &mut self.nodes, &mut self.triangles, &|items| {
             let mut block = TriangleBlock::EMPTY;
             for (lane, item) in items.iter().enumerate() {

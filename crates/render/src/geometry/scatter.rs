@@ -6,7 +6,7 @@
 use super::bvh::Child;
 use super::rays::{Hits, RayView};
 use super::simd::Simd;
-use super::traverse::{FLIGHTS, Flight, Nested, Tree};
+use super::traverse::{Course, FLIGHTS, Flight, Nested, Tree};
 use super::{Hit, Id};
 
 /// Where the results go.
@@ -83,15 +83,15 @@ impl Lists {
 pub(super) fn trace<S: Simd, O: Outcome>(
     tree: &Tree,
     rays: RayView<'_>,
-    members: &[u32],
+    members: &[(u32, Course)],
     flights: &mut [Flight; FLIGHTS],
     inner: &mut Flight,
     outcome: &mut O,
 ) {
     let mut lists = Lists { nodes: [0; FLIGHTS], leaves: [0; FLIGHTS], done: [0; FLIGHTS], counts: [0; 3] };
     let (first, mut rest) = members.split_at(members.len().min(FLIGHTS));
-    for (i, &member) in first.iter().enumerate() {
-        begin::<S, O>(&mut flights[i], tree, rays, member, outcome);
+    for (i, member) in first.iter().enumerate() {
+        begin(&mut flights[i], tree, rays, member, outcome);
         lists.add(i, flights[i].next());
     }
     while lists.counts != [0; 3] {
@@ -115,9 +115,9 @@ pub(super) fn trace<S: Simd, O: Outcome>(
             let number = lists.done[i % FLIGHTS] as usize % FLIGHTS;
             let flight = &mut flights[number];
             outcome.take(flight.number as usize, &flight.best);
-            if let Some((&member, others)) = rest.split_first() {
+            if let Some((member, others)) = rest.split_first() {
                 rest = others;
-                begin::<S, O>(flight, tree, rays, member, outcome);
+                begin(flight, tree, rays, member, outcome);
                 lists.add(number, flight.next());
             }
         }
@@ -125,8 +125,9 @@ pub(super) fn trace<S: Simd, O: Outcome>(
 }
 
 #[inline(always)]
-fn begin<S: Simd, O: Outcome>(flight: &mut Flight, tree: &Tree, rays: RayView<'_>, member: u32, outcome: &O) {
-    let ray = rays.get(member as usize);
-    flight.begin::<S>(ray, (0.0, tree.root), outcome.known(member as usize, ray.t_max));
-    flight.number = member;
+fn begin<O: Outcome>(flight: &mut Flight, tree: &Tree, rays: RayView<'_>, member: &(u32, Course), outcome: &O) {
+    let &(number, course) = member;
+    let ray = rays.get(number as usize);
+    flight.begin(ray, course, (0.0, tree.root), outcome.known(number as usize, ray.t_max));
+    flight.number = number;
 }

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3, Vec3};
 use super::bvh::{Child, Kind};
 use super::kernel::{Plain, Shear, dominant, sphere, triangle, turned};
 use super::simd::{Kernel, Lanes, Portable, Simd, Vec3s};
-use super::traverse::{Flight, Nested};
+use super::traverse::{Course, Flight, Nested};
 use super::*;
 use crate::sampler::hash;
 
@@ -69,7 +69,7 @@ impl Geometry {
     fn trace<S: Simd>(&self, ray: &Ray, any: bool, hit: &mut Hit, scratch: &mut Scratch) {
         self.planes.iter().for_each(|plane| plane.intersect(ray, hit));
         let flight: &mut Flight = &mut scratch.flights[0];
-        flight.begin::<S>(*ray, (0.0, self.tree.root), *hit);
+        flight.begin(*ray, Course::new::<S>(ray.direction), (0.0, self.tree.root), *hit);
         flight.fly::<S>(&self.tree, any, &mut Nested { flight: &mut scratch.inner, any });
         *hit = flight.best;
     }
@@ -406,16 +406,16 @@ fn rays_along_the_axes_and_in_the_planes_of_triangles_are_met_as_by_brute_force(
     check("axes", &geometry, &rays);
 }
 
-/// A sphere of triangles with bumps; neighbours share their vertices.
-fn bumpy_ball(random: &mut Random, rings: u32) -> MeshShape {
+/// A sphere of triangles around the origin, with bumps of a part of its radius; neighbours share their vertices.
+fn ball(random: &mut Random, rings: u32, bumps: f32, radius: f32) -> MeshShape {
     let sectors = 2 * rings;
-    let mut points = vec![Vec3::Y, Vec3::NEG_Y];
+    let mut points = vec![Vec3::Y * radius, Vec3::NEG_Y * radius];
     for ring in 1..rings {
         for sector in 0..sectors {
             let (polar, around) = (f64::from(ring) / f64::from(rings), f64::from(sector) / f64::from(sectors));
             let (sin, cos) = crate::math::sin_cos_degrees(polar * 180.0);
             let (s, c) = crate::math::sin_cos_degrees(around * 360.0);
-            points.push(DVec3::new(sin * c, cos, sin * s).as_vec3() * (0.7 + 0.3 * random.next()));
+            points.push(DVec3::new(sin * c, cos, sin * s).as_vec3() * radius * (1.0 - bumps * random.next()));
         }
     }
     let at = |ring: u32, sector: u32| 2 + (ring - 1) * sectors + sector % sectors;
@@ -433,28 +433,104 @@ fn bumpy_ball(random: &mut Random, rings: u32) -> MeshShape {
 
 #[test]
 fn no_ray_leaves_a_closed_mesh_between_its_triangles() {
-    let mut random = Random(9);
-    let mesh = bumpy_ball(&mut random, 20);
-    let mut targets = mesh.points.clone();
-    for triangle in 0..mesh.triangles.len() {
-        let [a, b, c] = mesh.triangle_points(triangle);
-        targets.extend([(a + b) * 0.5, b + (c - b) * random.next(), c + (a - c) * random.next(), (a + b + c) / 3.0]);
+    for (seed, size) in (0..).zip([1e-3, 1.0, 1e3, 1e6]) {
+        let mut random = Random(seed);
+        let mesh = ball(&mut random, 20, 0.3, size);
+        // Straight at the corners, at the edges and at the middles.
+        let mut targets = mesh.points.clone();
+        for triangle in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.triangle_points(triangle);
+            let somewhere = [b + (c - b) * random.next(), c + (a - c) * random.next()];
+            targets.extend([(a + b) * 0.5, somewhere[0], somewhere[1], (a + b + c) / 3.0]);
+        }
+        let geometry = plan(|plan| plan.mesh(mesh, &[here()]));
+        let from_middle = targets.iter().map(|&target| (Vec3::ZERO, target));
+        let rays: Vec<Ray> = targets
+            .iter()
+            .map(|&target| (random.point() * 0.1 * size, target))
+            .chain(from_middle)
+            .map(|(origin, target)| {
+                let direction = (target - origin).normalize();
+                Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE, time: None }
+            })
+            .collect();
+        let mut hits = Hits::default();
+        geometry.closest(rows(&rays).view(0.0), &mut hits, &mut Scratch::default());
+        for (i, ray) in rays.iter().enumerate() {
+            assert!(hits.get(i).id != Id::NONE, "size {size}: ray {i}, {ray:?}, slips through");
+        }
+        check("ball", &geometry, &rays.iter().step_by(50).copied().collect::<Vec<_>>());
     }
-    let geometry = plan(|plan| plan.mesh(mesh, &[here()]));
-    let rays: Vec<Ray> = targets
-        .iter()
-        .map(|&target| {
-            let origin = random.point() * 0.1;
-            let direction = (target - origin).normalize();
-            Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE, time: None }
-        })
-        .collect();
-    let mut hits = Hits::default();
-    geometry.closest(rows(&rays).view(0.0), &mut hits, &mut Scratch::default());
-    for (i, target) in targets.iter().enumerate() {
-        assert!(hits.get(i).id != Id::NONE, "ray {i} towards {target} slips through");
+}
+
+/// Rays that leave a convex shape as the shading sends them, out of each point that is seen, meet nothing: no specks.
+#[test]
+fn convex_shapes_cast_no_shadow_on_themselves_at_any_size() {
+    let sizes = [1e-3f32, 1e-2, 0.1, 1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6];
+    for (size, away) in sizes.into_iter().flat_map(|size| [0.0, 3.0].map(|away| (size, away))) {
+        let mut random = Random(11);
+        let center = Vec3::new(1.0, -0.5, 0.7) * size * away;
+        let at = DMat4::from_translation(center.as_dvec3());
+        let mesh = ball(&mut random, 12, 0.0, size);
+        let sphere = place(at * DMat4::from_scale(DVec3::splat(f64::from(size))));
+        let geometries = [plan(|plan| plan.mesh(mesh, &[place(at)])), plan(|plan| plan.sphere(&sphere))];
+        for geometry in &geometries {
+            let seen = rays(&mut random, 1500, size, center);
+            let seen: Vec<_> = seen.into_iter().filter(|ray| ray.origin.distance(center) > 1.5 * size).collect();
+            let mut hits = Hits::default();
+            geometry.closest(rows(&seen).view(0.0), &mut hits, &mut Scratch::default());
+            let mut leaving = Vec::new();
+            for (i, ray) in seen.iter().enumerate().filter(|(i, _)| hits.id.object[*i] != Id::NONE.object) {
+                let hit = hits.get(i);
+                let surface = geometry.surface(ray, &hit);
+                let normal = surface.geometric * -surface.geometric.dot(ray.direction).signum();
+                let origin = crate::math::offset(surface.point, normal);
+                let skip = if geometry.is_flat(hit.id.object) { hit.id } else { Id::NONE };
+                let side = (random.point() + normal * 1.8).normalize();
+                for direction in [normal, side].into_iter().filter(|side| side.dot(normal) > 0.05) {
+                    leaving.push(Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip, time: None });
+                }
+            }
+            let mut blocked = Vec::new();
+            geometry.occluded(rows(&leaving).view(0.0), &mut blocked, &mut Scratch::default());
+            let specks = blocked.iter().filter(|&&blocked| blocked).count();
+            assert!(leaving.len() > 300, "{} points are seen", leaving.len());
+            assert_eq!(specks, 0, "of {} rays, size {size} at {center}", leaving.len());
+        }
     }
-    check("ball", &geometry, &rays);
+}
+
+#[test]
+fn overlapping_and_enormous_scenes_are_met_as_by_brute_force() {
+    let mut random = Random(31);
+    let cube = [
+        [0, 2, 1],
+        [1, 2, 3],
+        [4, 5, 6],
+        [5, 7, 6],
+        [0, 1, 4],
+        [1, 5, 4],
+        [2, 6, 3],
+        [3, 6, 7],
+        [0, 4, 2],
+        [2, 4, 6],
+        [1, 3, 5],
+        [3, 7, 5],
+    ];
+    let boxes = soup((0..2000).flat_map(|_| {
+        let (center, half) = (random.point() * 0.3, random.point().abs() + 0.1);
+        let corner =
+            |i: u32| center + half * Vec3::from_array([0, 1, 2].map(|k| if i >> k & 1 == 0 { -1.0 } else { 1.0 }));
+        cube.map(|face| face.map(corner))
+    }));
+    let geometry = plan(|plan| plan.mesh(boxes, &[here()]));
+    check("boxes", &geometry, &rays(&mut random, 96, 1.0, Vec3::ZERO));
+    for size in [1e-9, 1e9] {
+        let mut mesh = random_soup(&mut random, 500, 0.3);
+        mesh.points.iter_mut().for_each(|point| *point *= size);
+        let geometry = plan(|plan| plan.mesh(mesh, &[here()]));
+        check("enormous", &geometry, &rays(&mut random, 600, size, Vec3::ZERO));
+    }
 }
 
 /// A ray that leaves a surface as the shading sends it does not meet the same place again.

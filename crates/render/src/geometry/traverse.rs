@@ -5,7 +5,7 @@
 
 use super::analytic;
 use super::build::MAX_DEPTH;
-use super::bvh::{Child, Kind, Node, Octant, Sides};
+use super::bvh::{Child, Kind, Node, Octant};
 use super::kernel::{self, Crossing, Inverse, Plain, Shear, Slab};
 use super::packet;
 use super::simd::{Simd, Vec3s};
@@ -98,8 +98,8 @@ pub(crate) struct Scratch {
     pub(super) packet: Box<packet::Stack>,
     pub(super) flights: Box<[Flight; FLIGHTS]>,
     pub(super) inner: Box<Flight>,
-    /// Rays that go on without a packet.
-    pub(super) scattered: Vec<u32>,
+    /// Rays that go on without a packet, and their courses.
+    pub(super) scattered: Vec<(u32, Course)>,
 }
 
 /// Rays that are on their way at a time.
@@ -134,22 +134,42 @@ impl InstanceLeaf {
     }
 }
 
+/// What a ray's direction means to boxes and triangles.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Course {
+    /// For [`Inverse`].
+    pub enter: [f32; 3],
+    pub leave: [f32; 3],
+    /// For [`Shear`].
+    pub slope: [f32; 2],
+    pub scale: f32,
+    pub octant: Octant,
+    /// The axis along which it is the longest.
+    pub dominant: u32,
+}
+
+impl Course {
+    #[inline(always)]
+    pub fn new<S: Simd>(direction: glam::Vec3) -> Course {
+        let dominant = kernel::dominant(direction);
+        let (d, turned) = (direction.to_array(), kernel::turned(dominant));
+        let inverse = kernel::inverse(S::load(&[d[0], d[1], d[2], 1.0, 1.0, 1.0, 1.0, 1.0]));
+        let ([ex, ey, ez, ..], [lx, ly, lz, ..]) = (inverse.enter.store(), inverse.leave.store());
+        let [i, j, k] = [d[turned[0]], d[turned[1]], d[turned[2]]];
+        let [i, j, scale, ..] = S::load(&[i, j, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]).div(S::splat(k)).store();
+        let octant = Octant::new([d[0].is_sign_negative(), d[1].is_sign_negative(), d[2].is_sign_negative()]);
+        let dominant = dominant as u32;
+        Course { enter: [ex, ey, ez], leave: [lx, ly, lz], slope: [i, j], scale, octant, dominant }
+    }
+}
+
 /// A ray on its way: what the boxes and the primitives need to know of it, the best that it has met, and what it has
 /// still to look into.
 #[derive(Debug, Clone)]
 pub(super) struct Flight {
     ray: Ray,
     pub best: Hit,
-    /// For [`Inverse`].
-    enter: [f32; 3],
-    leave: [f32; 3],
-    sides: Sides,
-    /// See [`Node::order`].
-    shift: u32,
-    /// For [`Shear`].
-    turned: [usize; 3],
-    slope: [f32; 2],
-    scale: f32,
+    course: Course,
     /// Which of the caller's rays it is.
     pub number: u32,
     /// How many children wait, with what lies at the bottom of the stack.
@@ -171,13 +191,14 @@ impl Flight {
             time: None,
         },
         best: Hit::NONE,
-        enter: [0.0; 3],
-        leave: [0.0; 3],
-        sides: Sides([0, 2, 4]),
-        shift: 0,
-        turned: [0; 3],
-        slope: [0.0; 2],
-        scale: 0.0,
+        course: Course {
+            enter: [0.0; 3],
+            leave: [0.0; 3],
+            slope: [0.0; 2],
+            scale: 0.0,
+            octant: Octant(0),
+            dominant: 0,
+        },
         number: 0,
         top: 0,
         near: [0.0; STACK],
@@ -186,20 +207,8 @@ impl Flight {
 
     /// Sends off a ray that has already met `best`, below a child that it enters at `enter`.
     #[inline(always)]
-    pub fn begin<S: Simd>(&mut self, ray: Ray, (enter, child): (f32, Child), best: Hit) {
-        let direction = ray.direction.to_array();
-        let [x, y, z] = direction;
-        let inverse = kernel::inverse(S::load(&[x, y, z, 1.0, 1.0, 1.0, 1.0, 1.0]));
-        let ([ex, ey, ez, ..], [lx, ly, lz, ..]) = (inverse.enter.store(), inverse.leave.store());
-        (self.enter, self.leave) = ([ex, ey, ez], [lx, ly, lz]);
-        let negative = [x.is_sign_negative(), y.is_sign_negative(), z.is_sign_negative()];
-        self.sides = Sides::new(negative);
-        self.shift = Octant::new(negative).shift();
-        self.turned = kernel::turned(kernel::dominant(ray.direction));
-        let [i, j, k] = [direction[self.turned[0]], direction[self.turned[1]], direction[self.turned[2]]];
-        let [i, j, k, ..] = S::load(&[i, j, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]).div(S::splat(k)).store();
-        (self.slope, self.scale) = ([i, j], k);
-        (self.ray, self.best) = (ray, best);
+    pub fn begin(&mut self, ray: Ray, course: Course, (enter, child): (f32, Child), best: Hit) {
+        (self.ray, self.course, self.best) = (ray, course, best);
         // The bottom of the stack is reached when nothing waits.
         (self.near[0], self.waiting[0]) = (f32::NEG_INFINITY, Child::NONE.code());
         (self.near[1], self.waiting[1]) = (enter, child.code());
@@ -215,14 +224,16 @@ impl Flight {
     /// Puts the children of a node, which comes next, in its place.
     #[inline(always)]
     pub fn open<S: Simd>(&mut self, node: &Node) {
-        let inverse = Inverse::<S> { enter: Vec3s::of(self.enter), leave: Vec3s::of(self.leave) };
+        let Course { enter, leave, octant, .. } = self.course;
+        let inverse = Inverse::<S> { enter: Vec3s::of(enter), leave: Vec3s::of(leave) };
+        let sides = octant.sides();
         let slab = Slab { origin: Vec3s::splat(self.ray.origin), inverse };
-        let (enter, leave) = kernel::slab(node.near(self.sides), node.far(self.sides), &slab);
+        let (enter, leave) = kernel::slab(node.near(sides), node.far(sides), &slab);
         let limit = leave.min(S::splat(self.best.t));
         let at = self.top - 1;
         let room = (self.near[at..].first_chunk_mut(), self.waiting[at..].first_chunk_mut());
         let (Some(near), Some(waiting)) = room else { unreachable!("{ROOM}") };
-        self.top = at + enter.pack(limit, &node.order, self.shift, &node.codes, near, waiting);
+        self.top = at + enter.pack(limit, &node.order, octant.shift(), &node.codes, near, waiting);
     }
 
     /// Meets what is in the leaf that comes next, and returns whether that made the hit better.
@@ -284,17 +295,15 @@ impl Flight {
 
     #[inline(always)]
     fn triangles<S: Simd>(&mut self, block: &TriangleBlock, enter: f32) {
-        let [i, j, k] = [self.turned[0] % 3, self.turned[1] % 3, self.turned[2] % 3];
+        let turned = kernel::turned(self.course.dominant as usize);
         let origin = self.ray.origin.to_array();
         let shear = Shear {
-            origin: Vec3s::of([origin[i], origin[j], origin[k]]),
-            slope: (S::splat(self.slope[0]), S::splat(self.slope[1])),
-            scale: S::splat(self.scale),
+            origin: Vec3s::of([origin[turned[0]], origin[turned[1]], origin[turned[2]]]),
+            slope: (S::splat(self.course.slope[0]), S::splat(self.course.slope[1])),
+            scale: S::splat(self.course.scale),
             t_min: S::splat(self.ray.t_min),
         };
-        let [a, b, c] = &block.vertices;
-        let corners = [load_turned(a, [i, j, k]), load_turned(b, [i, j, k]), load_turned(c, [i, j, k])];
-        if let Some(crossing) = kernel::triangle(&shear, corners, S::splat(enter), S::splat(self.best.t)) {
+        if let Some(crossing) = block.cross(&shear, turned, enter, self.best.t) {
             crossing.improve(&mut self.best, &block.ids, self.ray.skip);
         }
     }
@@ -313,10 +322,20 @@ impl Flight {
     }
 }
 
-/// Eight corners.
+impl TriangleBlock {
+    /// Where a ray, which enters the box of the block at `enter`, meets its triangles.
+    #[inline(always)]
+    pub fn cross<S: Simd>(&self, shear: &Shear<S>, turned: [usize; 3], enter: f32, t_max: f32) -> Option<Crossing<S>> {
+        let [a, b, c] = &self.vertices;
+        let corners = [load(a, turned), load(b, turned), load(c, turned)];
+        kernel::triangle(shear, corners, S::splat(enter), S::splat(t_max))
+    }
+}
+
+/// Eight corners in turned coordinates.
 #[inline(always)]
-fn load_turned<S: Simd>(rows: &[[f32; 8]; 3], [i, j, k]: [usize; 3]) -> Vec3s<S> {
-    Vec3s { x: S::load(&rows[i]), y: S::load(&rows[j]), z: S::load(&rows[k]) }
+fn load<S: Simd>(rows: &[[f32; 8]; 3], [i, j, k]: [usize; 3]) -> Vec3s<S> {
+    Vec3s { x: S::load(&rows[i % 3]), y: S::load(&rows[j % 3]), z: S::load(&rows[k % 3]) }
 }
 
 /// What happens at the leaf of an instance. (A trait and not a closure: a closure is compiled without the instruction
@@ -337,7 +356,8 @@ impl Instances for Nested<'_> {
     fn enter<S: Simd>(&mut self, tree: &Tree, leaf: &InstanceLeaf, enter: f32, ray: &Ray, best: &mut Hit) {
         // Hits as far as the best so far may still win by their object.
         let farthest = Hit { t: best.t.next_up(), ..Hit::NONE };
-        self.flight.begin::<S>(leaf.localize(ray, &tree.motions), (0.0, leaf.root), farthest);
+        let local = leaf.localize(ray, &tree.motions);
+        self.flight.begin(local, Course::new::<S>(local.direction), (0.0, leaf.root), farthest);
         self.flight.fly::<S>(tree, self.any, &mut NoInstances);
         let found = self.flight.best;
         if found.id != Id::NONE {
@@ -357,7 +377,7 @@ impl Instances for NoInstances {
 impl<S: Simd> Crossing<S> {
     /// Keeps the best of the hits with eight primitives.
     #[inline(always)]
-    fn improve(self, best: &mut Hit, ids: &[Id; 8], skip: Id) {
+    pub fn improve(self, best: &mut Hit, ids: &[Id; 8], skip: Id) {
         let mut mask = self.mask;
         if mask == 0 {
             return;

@@ -164,7 +164,7 @@ impl Analytic for Julia {
                 let is_safe = i == 0 || gap <= radius;
                 // Nothing lies in between if the neighbourhoods of both ends touch ([Keinert et al. 2014] "Enhanced Sphere
                 // Tracing"); but the surface is only met from outside.
-                if !is_safe && !(distance >= near && gap <= radius + distance) {
+                if !(is_safe || distance >= near && gap <= radius + distance) {
                     break;
                 }
                 if is_past(next) {
