@@ -161,10 +161,10 @@ impl Analytic for Julia {
             let distances = self.distances(ray, &ahead);
             for (i, (&next, &distance)) in ahead.iter().zip(&distances).enumerate() {
                 let gap = (next - t) * length;
-                let is_safe = i == 0 || gap <= radius;
                 // Nothing lies in between if the neighbourhoods of both ends touch ([Keinert et al. 2014] "Enhanced Sphere
                 // Tracing"); but the surface is only met from outside.
-                if !(is_safe || distance >= near && gap <= radius + distance) {
+                let is_safe = i == 0 || gap <= radius || distance >= near && gap <= radius + distance;
+                if !is_safe {
                     break;
                 }
                 if is_past(next) {
