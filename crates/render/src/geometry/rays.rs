@@ -144,6 +144,24 @@ impl Rays {
         self.time.extend(ray.time);
     }
 
+    /// Makes these rays some of others, in an order.
+    pub fn gather(&mut self, others: &Rays, order: &[u32]) {
+        fn pick<T: Copy>(to: &mut Vec<T>, from: &[T], order: &[u32]) {
+            to.clear();
+            to.extend(order.iter().map(|&i| from[i as usize]));
+        }
+        let Rays { origin, direction, t_max, skip, time } = self;
+        for (to, from) in [(origin, &others.origin), (direction, &others.direction)] {
+            pick(&mut to.x, &from.x, order);
+            pick(&mut to.y, &from.y, order);
+            pick(&mut to.z, &from.z, order);
+        }
+        pick(t_max, &others.t_max, order);
+        pick(&mut skip.object, &others.skip.object, order);
+        pick(&mut skip.index, &others.skip.index, order);
+        pick(time, &others.time, if others.time.is_empty() { &[] } else { order });
+    }
+
     /// Ray `i`, from 0 on.
     #[inline]
     pub fn get(&self, i: usize) -> Ray {

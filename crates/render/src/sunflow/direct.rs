@@ -19,6 +19,7 @@ pub(super) struct Shadows {
     light: Rows,
     nodes: Vec<u32>,
     blocked: Vec<bool>,
+    sorted: Sorted,
 }
 
 impl Shadows {
@@ -81,16 +82,79 @@ impl Shadows {
     pub fn trace(&mut self, geometry: &Geometry, queues: &mut Queues<Vec3>, scratch: &mut Scratch) {
         queues.stats.shadow_rays += self.nodes.len() as u64;
         queues.clock.lap(Stage::Shade);
-        geometry.occluded(self.rays.view(0.0), &mut self.blocked, scratch);
-        queues.clock.lap(Stage::Trace);
-        for (i, (&node, &blocked)) in self.nodes.iter().zip(&self.blocked).enumerate() {
-            if !blocked {
-                queues.nodes[node as usize] += self.light.get(i);
-            }
+        let Shadows { rays, light, nodes, blocked, sorted } = self;
+        let mut arrives = |i: usize| queues.nodes[nodes[i] as usize] += light.get(i);
+        if sorted.sort(rays) {
+            geometry.occluded(sorted.rays.view(0.0), blocked, scratch);
+            let open = sorted.order.iter().zip(&*blocked).filter(|(_, blocked)| !**blocked);
+            open.for_each(|(&i, _)| arrives(i as usize));
+        } else {
+            geometry.occluded(rays.view(0.0), blocked, scratch);
+            (0..blocked.len()).filter(|&i| !blocked[i]).for_each(arrives);
         }
+        queues.clock.lap(Stage::Trace);
         self.rays.clear();
         self.light.clear();
         self.nodes.clear();
+    }
+}
+
+/// Rays once more, by where they go: packets of them need directions of the same signs, and of the same dominant axis.
+#[derive(Default)]
+struct Sorted {
+    rays: Rays,
+    /// What each of them is among all.
+    order: Vec<u32>,
+    headings: Vec<u8>,
+}
+
+impl Sorted {
+    /// Rays that are looked at together: as many as the largest packets have.
+    const GROUP: usize = 16;
+    /// Eight combinations of signs for each dominant axis.
+    const HEADINGS: usize = 24;
+
+    /// Returns whether sorting was worth it: rays that already go together stay where they are.
+    fn sort(&mut self, all: &Rays) -> bool {
+        simd::run(Headings { rays: all, headings: &mut self.headings });
+        let mixed = |group: &&[u8]| group.iter().any(|heading| heading != &group[0]);
+        let groups = self.headings.chunks(Self::GROUP);
+        if groups.clone().filter(mixed).count() * 4 < groups.len() {
+            return false;
+        }
+        let mut ends = [0; Self::HEADINGS + 1];
+        self.headings.iter().for_each(|&heading| ends[usize::from(heading) + 1] += 1);
+        (0..Self::HEADINGS).for_each(|k| ends[k + 1] += ends[k]);
+        self.order.resize(all.len(), 0);
+        for (i, &heading) in (0..).zip(&self.headings) {
+            let end = &mut ends[usize::from(heading)];
+            self.order[*end as usize] = i;
+            *end += 1;
+        }
+        self.rays.gather(all, &self.order);
+        true
+    }
+}
+
+/// Which way rays go.
+struct Headings<'a> {
+    rays: &'a Rays,
+    headings: &'a mut Vec<u8>,
+}
+
+impl simd::Kernel for Headings<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let count = self.rays.len();
+        self.headings.resize(count, 0);
+        let [x, y, z] = self.rays.direction.slices(count);
+        for (i, heading) in self.headings[..count].iter_mut().enumerate() {
+            let (ax, ay, az) = (x[i].abs(), y[i].abs(), z[i].abs());
+            let axis = if (ax >= ay) & (ax >= az) { 0 } else { 1 + u8::from(az > ay) };
+            *heading = u8::from(x[i] < 0.0) | u8::from(y[i] < 0.0) << 1 | u8::from(z[i] < 0.0) << 2 | axis << 3;
+        }
     }
 }
 
