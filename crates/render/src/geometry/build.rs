@@ -302,19 +302,25 @@ pub(crate) fn build<B: Send>(
             terminal.content = Content::Done { root: treelet.append(nodes, blocks) };
         }
         // By what there is so far we know how much there will be.
-        let ahead = |length: usize| (length as f64 * 1.02 * (count - done) as f64 / done as f64) as usize + 16;
+        let ahead = |length: usize| (length as f64 * (count - done) as f64 / done as f64) as usize;
         if done < count {
-            nodes.reserve_exact(ahead(nodes.len() - nodes_before));
-            blocks.reserve_exact(ahead(blocks.len() - blocks_before));
+            reserve(nodes, ahead(nodes.len() - nodes_before));
+            reserve(blocks, ahead(blocks.len() - blocks_before));
         }
     }
     let root = match top[..] {
         [Binary { content: Content::Done { root }, .. }] => root,
         _ => collapse(&top, leaf_size, nodes, &mut |_| unreachable!("the leaves are in the treelets")),
     };
-    nodes.shrink_to_fit();
-    blocks.shrink_to_fit();
     Some((root, top[0].bounds.aabb()))
+}
+
+/// Makes room for so many more and some: memory that nothing is written to costs nothing, whereas to grow takes twice as
+/// much for a while.
+fn reserve<T>(list: &mut Vec<T>, more: usize) {
+    if list.capacity() - list.len() < more {
+        list.reserve_exact(more + more / 8 + 16);
+    }
 }
 
 /// Splits a range down to treelets.

@@ -137,7 +137,7 @@ impl MeshShape {
 
     /// How much memory the triangles take, without normals and texture coordinates.
     fn bytes(&self) -> usize {
-        self.points.capacity() * size_of::<Vec3>() + self.triangles.capacity() * size_of::<[u32; 3]>()
+        self.points.len() * size_of::<Vec3>() + self.triangles.len() * size_of::<[u32; 3]>()
     }
 
     /// The texture coordinates of a triangle's corners.

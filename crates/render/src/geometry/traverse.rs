@@ -68,10 +68,10 @@ pub(super) struct Tree {
 impl Tree {
     /// How much memory nodes and leaves take.
     pub fn bytes(&self) -> usize {
-        let instances = self.instances.capacity() * size_of::<InstanceLeaf>();
-        let blocks = self.triangles.capacity() * size_of::<TriangleBlock>();
-        let spheres = self.spheres.capacity() * size_of::<SphereBlock>();
-        self.nodes.capacity() * size_of::<Node>() + blocks + spheres + instances
+        let instances = self.instances.len() * size_of::<InstanceLeaf>();
+        let blocks = self.triangles.len() * size_of::<TriangleBlock>();
+        let spheres = self.spheres.len() * size_of::<SphereBlock>();
+        self.nodes.len() * size_of::<Node>() + blocks + spheres + instances
     }
 }
 
