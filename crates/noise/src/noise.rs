@@ -241,6 +241,16 @@ impl Noise {
         }
     }
 
+    /// [`Noise::sum_fast`] of the noise alone, and of those that have a faster way for many points.
+    fn fill_fast<const N: usize>(&self, level: Level, points: &[&[f32]], outputs: [&mut [f32]; N]) -> usize {
+        match *points {
+            [x, y, z] if self.basis == Basis::Simplex && self.period == [0.0; 4] => {
+                simplex::fill(level, &self.tables, [x, y, z], outputs)
+            }
+            _ => self.sum_fast(level, &Terms::ONE, points, outputs),
+        }
+    }
+
     /// The kernel made by hand for single points in space, if the level in use has one for this noise.
     #[inline(always)]
     pub(crate) fn at_point(&self) -> Option<AtPoint> {
@@ -331,8 +341,8 @@ impl Octave<'_> {
     pub fn fill(&self, level: Level, points: &[&[f32]], values: &mut [f32], gradient: &mut [&mut [f32]]) {
         let noise = self.noise;
         let done = match gradient {
-            [] => noise.sum_fast(level, &Terms::ONE, points, [&mut *values]),
-            [x, y, z] => noise.sum_fast(level, &Terms::ONE, points, [&mut *values, x, y, z]),
+            [] => noise.fill_fast(level, points, [&mut *values]),
+            [x, y, z] => noise.fill_fast(level, points, [&mut *values, x, y, z]),
             _ => 0,
         };
         if done == values.len() {

@@ -118,6 +118,32 @@ pub trait Real:
         [Self::select(with_x, sign, zero), y, Self::select(with_z, second, zero)]
     }
 
+    /// `self + a · b`, where the product is exact, or where `self` is zero: fused or not, the bits are the same.
+    #[inline(always)]
+    fn plus_exact(self, a: Self, b: Self) -> Self {
+        self + a * b
+    }
+
+    /// [`Real::edge_dot`] of the offset from a corner of a tetrahedron, given that from its first one, from where it has moved by
+    /// `shift` along all axes and, with `STEP` −1, back by 1 along that of the largest offset, or with `STEP` 1 forth along that
+    /// of the least one: z where the first mask is set, else x or y, of which y is larger where the second one is set.
+    #[inline(always)]
+    fn tetrahedron_dot<const STEP: i32>(
+        code: Self::Int,
+        [x, y, z]: [Self; 3],
+        shift: f64,
+        [is_z, rising]: [Self::Mask; 2],
+    ) -> Self {
+        let [edge_x, edge_y, edge_z] = Self::edge(code);
+        let moved = (edge_x + edge_y + edge_z) * Self::constant(shift);
+        let dot = moved.plus_exact(edge_z, z).plus_exact(edge_y, y).plus_exact(edge_x, x);
+        match STEP {
+            0 => dot,
+            1 => dot + Self::select(is_z, edge_z, Self::select(rising, edge_x, edge_y)),
+            _ => dot - Self::select(is_z, edge_z, Self::select(rising, edge_y, edge_x)),
+        }
+    }
+
     /// [`Real::edge_dot`] of the offsets from the eight corners of a cell (bit 0 of a corner's index says whether it is the
     /// upper one along x, bit 1 along y, bit 2 along z), given the offset from the lowest corner, which is not negative.
     #[inline(always)]

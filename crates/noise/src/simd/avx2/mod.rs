@@ -165,10 +165,35 @@ impl Real for F32x8 {
         }
     }
     #[inline(always)]
+    fn plus_exact(self, a: Self, b: Self) -> Self {
+        F32x8(unsafe { _mm256_fmadd_ps(a.0, b.0, self.0) })
+    }
+    /// The sign is that of the whole; the movements come from a table too.
+    #[inline(always)]
+    fn tetrahedron_dot<const STEP: i32>(
+        code: I32x8,
+        [x, y, z]: [Self; 3],
+        shift: f64,
+        [is_z, rising]: [M32x8; 2],
+    ) -> Self {
+        let [line_x, line_y, line_z] = Self::line(code);
+        // (Lines with an even code have the sum 2, the others 0.)
+        let moves = F32x8(unsafe { _mm256_setr_ps(2.0, 0.0, 2.0, 0.0, 2.0, 0.0, 2.0, 0.0) }) * Self::constant(shift);
+        let moved = F32x8(unsafe { _mm256_permutevar_ps(moves.0, code.0) });
+        let along_z = if shift == 0.0 { line_z * z } else { moved.plus_exact(line_z, z) };
+        let dot = along_z.plus_exact(line_y, y).plus_exact(line_x, x);
+        let (larger, smaller) = (Self::select(rising, line_y, line_x), Self::select(rising, line_x, line_y));
+        let dot = match STEP {
+            0 => dot,
+            1 => dot + Self::select(is_z, line_z, smaller),
+            _ => dot - Self::select(is_z, line_z, larger),
+        };
+        dot.negated_by(code)
+    }
+    #[inline(always)]
     fn edge(code: I32x8) -> [Self; 3] {
-        let [x, y, z] = unsafe { lines() };
-        let line = |line| F32x8(unsafe { _mm256_permutevar8x32_ps(line, code.0) }).negated_by(code);
-        [line(x), line(y), line(z)]
+        let [x, y, z] = Self::line(code);
+        [x.negated_by(code), y.negated_by(code), z.negated_by(code)]
     }
     #[inline(always)]
     fn edge_dot_plane(code: I32x8, x: Self, y: Self) -> Self {
@@ -209,6 +234,19 @@ impl F32x8 {
     #[inline(always)]
     pub fn from_lanes(lanes: __m256) -> Self {
         F32x8(lanes)
+    }
+
+    /// The components of the edge's line, by the low three bits of its code.
+    #[inline(always)]
+    fn line(code: I32x8) -> [Self; 3] {
+        unsafe {
+            let [x, y, z] = lines();
+            [
+                F32x8(_mm256_permutevar8x32_ps(x, code.0)),
+                F32x8(_mm256_permutevar8x32_ps(y, code.0)),
+                F32x8(_mm256_permutevar8x32_ps(z, code.0)),
+            ]
+        }
     }
 
     /// Negated where bit 3 of `code` is set.

@@ -175,6 +175,30 @@ impl Real for F32x16 {
             |table: &[f32; 16]| F32x16(unsafe { _mm512_permutexvar_ps(code.0, _mm512_loadu_ps(table.as_ptr())) });
         [part(&EDGE_X), part(&EDGE_Y), part(&EDGE_Z)]
     }
+    #[inline(always)]
+    fn plus_exact(self, a: Self, b: Self) -> Self {
+        F32x16(unsafe { _mm512_fmadd_ps(a.0, b.0, self.0) })
+    }
+    /// The movements come from a table too.
+    #[inline(always)]
+    fn tetrahedron_dot<const STEP: i32>(
+        code: I32x16,
+        [x, y, z]: [Self; 3],
+        shift: f64,
+        [is_z, rising]: [M32x16; 2],
+    ) -> Self {
+        let [edge_x, edge_y, edge_z] = Self::edge(code);
+        let moves = F32x16(unsafe { _mm512_loadu_ps(EDGE_SUM.as_ptr()) }) * Self::constant(shift);
+        let moved = F32x16(unsafe { _mm512_permutexvar_ps(code.0, moves.0) });
+        let along_z = if shift == 0.0 { edge_z * z } else { moved.plus_exact(edge_z, z) };
+        let dot = along_z.plus_exact(edge_y, y).plus_exact(edge_x, x);
+        let (larger, smaller) = (Self::select(rising, edge_y, edge_x), Self::select(rising, edge_x, edge_y));
+        match STEP {
+            0 => dot,
+            1 => dot + Self::select(is_z, edge_z, smaller),
+            _ => dot - Self::select(is_z, edge_z, larger),
+        }
+    }
     /// Of an edge's two components the first is along x or y, the second along y or z. Each is chosen, with its sign, by one
     /// instruction that takes some bits from one number and some from another: where x and z are negative and y is not, the
     /// bit that takes the sign is free to say which.
@@ -206,6 +230,9 @@ impl Real for F32x16 {
 const EDGE_X: [f32; 16] = [1., 1., 1., 1., 0., 0., 1., 1., -1., -1., -1., -1., 0., 0., -1., -1.];
 const EDGE_Y: [f32; 16] = [1., -1., 0., 0., 1., 1., 1., 0., -1., 1., 0., 0., -1., -1., -1., 0.];
 const EDGE_Z: [f32; 16] = [0., 0., 1., -1., 1., -1., 0., -1., 0., 0., -1., 1., -1., 1., 0., 1.];
+
+/// The sum of the three.
+const EDGE_SUM: [f32; 16] = [2., 0., 2., 0., 2., 0., 2., 0., -2., 0., -2., 0., -2., 0., -2., 0.];
 
 /// Bits of `yes` where those of the word at the code are set, else of `no`.
 #[inline(always)]
