@@ -305,7 +305,8 @@ impl Sunflow {
     /// Light that comes to a matte surface of a colour by way of mirrors and glass.
     fn add_caustics(&self, point: &Point<'_>, color: Vec3, nearest: &mut Nearest, queues: &mut Queues<Vec3>) {
         if let Some(Caustics::Map(map)) = &self.caustics {
-            let irradiance = map.irradiance(point.front, point.surface.normal, nearest);
+            let behind = point.path.depth.diffuse > 0;
+            let irradiance = map.irradiance(point.front, point.surface.normal, behind, nearest);
             self.emit(point, color * irradiance * std::f32::consts::FRAC_1_PI, queues);
         }
     }

@@ -239,6 +239,8 @@ fn sunflow(
 
 /// Most samples that one point takes of anything: whatever a scene asks for, memory is bounded.
 const MOST_SAMPLES: u32 = 1 << 16;
+/// Fewest rays of a point whose light would be kept for its neighbours, if the scene asks for that many.
+const LEAST_CACHED: u32 = 16;
 /// Most sets of virtual lights.
 const MOST_SETS: u32 = 256;
 /// Most photons that are sent for caustics.
@@ -257,7 +259,9 @@ fn indirect(scene: &Scene, depth: u8) -> (Indirect, u8) {
         GiKind::Path { samples } => (Indirect::Paths { samples: bounded(*samples) }, depth),
         // Sunflow: without a map there is one bounce (R6), with it there are as many as photons make.
         GiKind::IrradianceCache { samples, global, .. } => {
-            (Indirect::Paths { samples: bounded(*samples) }, if global.is_some() { depth } else { depth.min(1) })
+            // Every pixel takes some, where Sunflow takes them all at a few points.
+            let samples = samples.div_ceil(16).max((*samples).min(LEAST_CACHED));
+            (Indirect::Paths { samples: bounded(samples) }, if global.is_some() { depth } else { depth.min(1) })
         }
         &GiKind::Instant { samples, sets, bias, bias_samples } => {
             let (samples, bias_samples) = (bounded(samples), bounded(bias_samples));

@@ -13,6 +13,7 @@ pub(crate) struct CausticMap {
     axes: Vec<u8>,
     gather: usize,
     radius: f32,
+    crowds: Crowds,
 }
 
 /// How sharply near photons count more: Jensen's constant k.
@@ -33,11 +34,19 @@ impl CausticMap {
         let radius = radius.min(1.4 * (brightest * gather as f32).sqrt());
         let mut axes = vec![0; photons.len()];
         split(&mut photons, &mut axes);
-        (!photons.is_empty() && radius > 0.0).then_some(CausticMap { photons, axes, gather, radius })
+        (!photons.is_empty() && radius > 0.0).then(|| {
+            let crowds = Crowds::new(&photons, radius);
+            CausticMap { photons, axes, gather, radius, crowds }
+        })
     }
 
-    /// Irradiance at a point of a surface.
-    pub fn irradiance(&self, point: Vec3, normal: Vec3, nearest: &mut Nearest) -> Vec3 {
+    /// Irradiance at a point of a surface. For one of the many `behind` another matte surface fewer photons will do.
+    pub fn irradiance(&self, point: Vec3, normal: Vec3, behind: bool, nearest: &mut Nearest) -> Vec3 {
+        if !self.crowds.is_near(point) {
+            return Vec3::ZERO;
+        }
+        let gather = if behind { (self.gather / 8).max(2 * LEAST).min(self.gather) } else { self.gather };
+        nearest.gather = gather;
         nearest.found.clear();
         nearest.reach = self.radius * self.radius;
         self.search(point, 0, self.photons.len(), nearest);
@@ -45,7 +54,7 @@ impl CausticMap {
         if found.len() < LEAST {
             return Vec3::ZERO;
         }
-        let radius2 = if found.len() < self.gather { self.radius * self.radius } else { found[0].0 };
+        let radius2 = if found.len() < gather { self.radius * self.radius } else { found[0].0 };
         let radius = radius2.sqrt();
         // In the order of the tree, so that the sum does not depend on the order of the search.
         nearest.order.clear();
@@ -76,11 +85,72 @@ impl CausticMap {
         self.search(point, near.0, near.1, nearest);
         let distance2 = photon.point.distance_squared(point);
         if distance2 < nearest.reach {
-            nearest.add(distance2, middle as u32, self.gather);
+            nearest.add(distance2, middle as u32);
         }
         if side * side < nearest.reach {
             self.search(point, far.0, far.1, nearest);
         }
+    }
+}
+
+/// Where there may be enough photons to make light: most points of most scenes are done after one look.
+#[derive(Debug, Clone)]
+struct Crowds {
+    /// The lowest corner, and cells per unit of length: their sides are the radius at least.
+    corner: Vec3,
+    per_unit: Vec3,
+    size: [usize; 3],
+    /// How many photons lie in each cell and those around it, up to [`LEAST`].
+    near: Vec<u8>,
+}
+
+impl Crowds {
+    /// Most cells along an axis.
+    const MOST: f32 = 192.0;
+
+    fn new(photons: &[Photon], radius: f32) -> Crowds {
+        let bounds = photons
+            .iter()
+            .fold([photons[0].point; 2], |[min, max], Photon { point, .. }| [min.min(*point), max.max(*point)]);
+        // One cell of nothing on each side.
+        let (corner, extent) = (bounds[0] - radius, bounds[1] - bounds[0] + 2.0 * radius);
+        let cells = (extent / radius).floor().min(Vec3::splat(Self::MOST)).max(Vec3::ONE);
+        let cells = Vec3::select(cells.cmpge(Vec3::ONE), cells, Vec3::ONE);
+        let size = cells.to_array().map(|count| count as usize);
+        let mut crowds = Crowds { corner, per_unit: cells / extent, size, near: vec![0; size[0] * size[1] * size[2]] };
+        for photon in photons {
+            if let Some(cell) = crowds.cell(photon.point) {
+                crowds.near[cell] = (crowds.near[cell] + 1).min(LEAST as u8);
+            }
+        }
+        for (axis, step) in [1, size[0], size[0] * size[1]].into_iter().enumerate() {
+            crowds.widen(axis, step);
+        }
+        crowds
+    }
+
+    /// Adds to every cell its neighbours along an axis.
+    fn widen(&mut self, axis: usize, step: usize) {
+        let before = self.near.clone();
+        for (i, near) in self.near.iter_mut().enumerate() {
+            let place = i / step % self.size[axis];
+            let below = if place > 0 { before[i - step] } else { 0 };
+            let above = if place + 1 < self.size[axis] { before[i + step] } else { 0 };
+            *near = (*near + below + above).min(LEAST as u8);
+        }
+    }
+
+    fn cell(&self, point: Vec3) -> Option<usize> {
+        let at = (point - self.corner) * self.per_unit;
+        let inside = at.cmpge(Vec3::ZERO).all();
+        let [x, y, z] = at.to_array().map(|at| at as usize);
+        let [columns, rows, layers] = self.size;
+        (inside && x < columns && y < rows && z < layers).then(|| (z * rows + y) * columns + x)
+    }
+
+    /// Whether enough photons may lie within the radius.
+    fn is_near(&self, point: Vec3) -> bool {
+        self.cell(point).is_some_and(|cell| usize::from(self.near[cell]) >= LEAST)
     }
 }
 
@@ -108,13 +178,15 @@ pub(crate) struct Nearest {
     /// A heap, the farthest first: squared distance and photon.
     found: Vec<(f32, u32)>,
     order: Vec<(u32, f32)>,
+    /// How many are wanted.
+    gather: usize,
     /// Squared distance beyond which nothing is looked for.
     reach: f32,
 }
 
 impl Nearest {
-    fn add(&mut self, distance2: f32, index: u32, most: usize) {
-        let found = &mut self.found;
+    fn add(&mut self, distance2: f32, index: u32) {
+        let (found, most) = (&mut self.found, self.gather);
         if found.len() < most {
             found.push((distance2, index));
             let mut at = found.len() - 1;
