@@ -117,7 +117,7 @@ struct Job<'a, R> {
     crop: Rect,
     /// What the filter needs for it.
     frame: Rect,
-    /// What is rendered: one pixel more on each side, if decisions need neighbours.
+    /// What is rendered: one pixel more on each side for every pass that asks neighbours, which have asked theirs.
     region: Rect,
     done: AtomicU64,
     total: AtomicU64,
@@ -132,13 +132,10 @@ impl<'a, R: Rules> Job<'a, R> {
             let (x1, y1) = (x1.clamp(1, width), y1.clamp(1, height));
             [x0.min(x1 - 1), y0.min(y1 - 1), x1, y1]
         });
-        let wider = |Rect([x0, y0, x1, y1]): Rect, by: u32| {
-            Rect([x0.saturating_sub(by), y0.saturating_sub(by), (x1 + by).min(width), (y1 + by).min(height)])
-        };
         let passes = passes(scene.sampling);
         let crop = Rect(crop);
-        let frame = wider(crop, scene.taps().reach());
-        let region = wider(frame, u32::from(passes.len() > 1));
+        let frame = wider(crop, scene.taps().reach(), scene.size);
+        let region = wider(frame, passes.len() as u32 - 1, scene.size);
         let (done, total, paused) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
         Job { scene, rules, options, observer, passes, crop, frame, region, done, total, paused }
     }
@@ -179,7 +176,8 @@ impl<'a, R: Rules> Job<'a, R> {
             self.pass(&mut state, pass, &mut stats)?;
             let Some(&next) = self.passes.get(state.pass as usize + 1) else { break };
             state.pass += 1;
-            self.choose(&mut state.tiles, next.choice);
+            let later = self.passes.len() as u32 - 1 - state.pass;
+            self.choose(&mut state.tiles, next.choice, wider(self.frame, later, self.scene.size));
             let samples = u64::from(next.end - next.first);
             let work: u64 = state.tiles.iter().map(|tile| tile.active_count() * samples).sum();
             self.total.fetch_add(work, Ordering::Relaxed);
@@ -328,8 +326,8 @@ impl<'a, R: Rules> Job<'a, R> {
         self.observer.progress(done, self.total.load(Ordering::Relaxed));
     }
 
-    /// Chooses the pixels of the next pass.
-    fn choose(&self, tiles: &mut [Tile], choice: Choice) {
+    /// Chooses the pixels of the next pass among those that count.
+    fn choose(&self, tiles: &mut [Tile], choice: Choice, among: Rect) {
         let (first, threshold) = match choice {
             Choice::All => return tiles.iter_mut().for_each(|tile| tile.begin(Active::All)),
             Choice::Edges(threshold) => (true, threshold),
@@ -338,7 +336,7 @@ impl<'a, R: Rules> Job<'a, R> {
         // The deviation of a pair that differs by the threshold t, |a − b| / (a + b) = t, is t.
         let is_uneven = |spread: &Spread| spread.count > 1 && spread.deviation() > threshold;
         let choose = |tile: &Tile| {
-            let [x0, y0, x1, y1] = tile.rect.meet(self.frame).0;
+            let [x0, y0, x1, y1] = tile.rect.meet(among).0;
             let inner = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
             let chosen = inner.filter(|&(x, y)| {
                 let slot = tile.rect.index(x, y);
@@ -457,6 +455,11 @@ impl<'a, R: Rules> Job<'a, R> {
             Err(Unfit)
         }
     }
+}
+
+/// A part of a picture of a size with so many pixels more on each side, as far as there are any.
+fn wider(Rect([x0, y0, x1, y1]): Rect, by: u32, [width, height]: [u32; 2]) -> Rect {
+    Rect([x0.saturating_sub(by), y0.saturating_sub(by), (x1 + by).min(width), (y1 + by).min(height)])
 }
 
 /// More samples than any picture has: 16,384² pixels of 2²⁰ samples, and room for what several passes add up to.

@@ -371,3 +371,27 @@ fn samplers_choose_the_number_of_samples() {
     assert_eq!(count("sampler multipass samples 5"), 5);
     assert_eq!(count("sampler bucket"), 4);
 }
+
+#[test]
+fn crops_are_parts_of_the_whole_after_any_number_of_passes() {
+    for aa in ["0 1", "0 2", "0 3", "1 3"] {
+        let text = format!(
+            "image {{ resolution 60 44 aa {aa} filter gaussian }}
+            camera {{ type pinhole eye 0 0 5 target 0 0 0 up 0 1 0 fov 50 aspect 1.3636 }}
+            light {{ type spherical color 1 1 1 radiance 9 center 2 4 4 radius 1 samples 8 }}
+            gi {{ type ambocc bright 1 1 1 dark 0 0 0 samples 8 maxdist 3 }}
+            shader {{ name grey type diffuse diff .6 .5 .4 }} shader {{ name mirror type mirror refl .9 .9 .9 }}
+            object {{ shader grey type plane p 0 -1 0 n 0.1 1 0.2 }}
+            object {{ shader grey type sphere c -.8 -.1 0 r .9 }} object {{ shader mirror type sphere c 1 0 0 r .8 }}"
+        );
+        let whole = film(&text);
+        let [x0, y0, x1, y1] = [9, 6, 41, 37];
+        let crop = part(&text, Some([x0, y0, x1, y1]));
+        for y in y0..y1 {
+            let row = |film: &Film, x: u32, y: u32| {
+                film.pixels[(y * film.width + x) as usize..][..(x1 - x0) as usize].to_vec()
+            };
+            assert_eq!(row(&crop, 0, y - y0), row(&whole, x0, y), "aa {aa}, row {y}");
+        }
+    }
+}

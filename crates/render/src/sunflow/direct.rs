@@ -83,14 +83,20 @@ impl Shadows {
         queues.stats.shadow_rays += self.nodes.len() as u64;
         queues.clock.lap(Stage::Shade);
         let Shadows { rays, light, nodes, blocked, sorted } = self;
-        let mut arrives = |i: usize| queues.nodes[nodes[i] as usize] += light.get(i);
         if sorted.sort(rays) {
-            geometry.occluded(sorted.rays.view(0.0), blocked, scratch);
-            let open = sorted.order.iter().zip(&*blocked).filter(|(_, blocked)| !**blocked);
-            open.for_each(|(&i, _)| arrives(i as usize));
+            geometry.occluded(sorted.rays.view(0.0), &mut sorted.blocked, scratch);
+            blocked.resize(nodes.len(), false);
+            for (&i, &is_blocked) in sorted.order.iter().zip(&sorted.blocked) {
+                blocked[i as usize] = is_blocked;
+            }
         } else {
             geometry.occluded(rays.view(0.0), blocked, scratch);
-            (0..blocked.len()).filter(|&i| !blocked[i]).for_each(arrives);
+        }
+        // In the order in which they were asked for: sums must not depend on what else is in the queue.
+        for (i, (&node, &blocked)) in nodes.iter().zip(&*blocked).enumerate() {
+            if !blocked {
+                queues.nodes[node as usize] += light.get(i);
+            }
         }
         queues.clock.lap(Stage::Trace);
         self.rays.clear();
@@ -106,6 +112,7 @@ struct Sorted {
     /// What each of them is among all.
     order: Vec<u32>,
     headings: Vec<u8>,
+    blocked: Vec<bool>,
 }
 
 impl Sorted {
