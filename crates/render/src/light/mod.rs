@@ -97,6 +97,11 @@ impl Light {
         Light::Beams(counts.map(beams))
     }
 
+    /// Whether a point sees it in one direction: see [`Single`].
+    pub fn is_single(&self) -> bool {
+        matches!(self, Light::Point(_) | Light::Directional(_) | Light::Sun(_))
+    }
+
     /// What arrives at a point, if nothing is in the way: light `number` of the scene, a fan of samples after the other.
     /// Those that are [`Single`], and beams, are left out.
     pub fn arrive(&self, number: u32, at: &Receiver, fan: &mut Fan, each: &mut impl FnMut(&mut Fan)) {

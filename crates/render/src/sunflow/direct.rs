@@ -92,16 +92,16 @@ impl Shadows {
         } else {
             geometry.occluded(rays.view(0.0), blocked, scratch);
         }
+        queues.clock.lap(Stage::Trace);
         // In the order in which they were asked for: sums must not depend on what else is in the queue.
         for (i, (&node, &blocked)) in nodes.iter().zip(&*blocked).enumerate() {
             if !blocked {
                 queues.nodes[node as usize] += light.get(i);
             }
         }
-        queues.clock.lap(Stage::Trace);
-        self.rays.clear();
-        self.light.clear();
-        self.nodes.clear();
+        rays.clear();
+        light.clear();
+        nodes.clear();
     }
 }
 
@@ -188,6 +188,11 @@ impl Lit<'_> {
     }
 }
 
+/// [`Lit::even`], and that nothing limits it.
+fn unlimited(lit: &Lit<'_>) -> (Vec3, f32) {
+    (lit.even(), f32::INFINITY)
+}
+
 /// Surfaces that wait for light, in rows.
 #[derive(Default)]
 pub(super) struct Waiting {
@@ -230,7 +235,7 @@ impl Waiting {
 
     /// All surfaces, as they are.
     fn fill_all(&mut self, lit: &[Lit<'_>]) {
-        self.fill(lit, 0..lit.len() as u32, |lit| (lit.even(), f32::INFINITY));
+        self.fill(lit, 0..lit.len() as u32, unlimited);
     }
 }
 
@@ -335,20 +340,23 @@ impl<L: Single> simd::Kernel for Reach<'_, L> {
 impl Sunflow {
     /// Direct light on surfaces, one light after the other, so that the rays towards it go together.
     pub(super) fn illuminate(&self, geometry: &Geometry, lit: &[Lit<'_>], room: &mut Room, queues: &mut Queues<Vec3>) {
-        room.waiting.fill_all(lit);
+        let mut all_wait = false;
         for (light, number) in self.lights.iter().zip(0..) {
+            if light.is_single() && !all_wait {
+                room.waiting.fill_all(lit);
+                all_wait = true;
+            }
             match light {
                 Light::Point(lamp) => shine(*lamp, geometry, lit, room, queues),
                 Light::Directional(beam) => shine(*beam, geometry, lit, room, queues),
                 Light::Sun(sun) => shine(*sun, geometry, lit, room, queues),
                 Light::Beams(beams) => {
                     let list = |lit: &Lit<'_>| usize::from(lit.point.path.depth.diffuse > 0);
-                    let value = |lit: &Lit<'_>| (lit.even(), f32::INFINITY);
-                    in_turn(beams, lit, list, value, room, |beam, share, room| {
+                    in_turn(beams, lit, list, unlimited, room, |beam, share, room| {
                         let beam = Arrival { irradiance: beam.irradiance * share, ..*beam };
                         shine(beam, geometry, lit, room, queues);
                     });
-                    room.waiting.fill_all(lit);
+                    all_wait = false;
                 }
                 _ => {
                     let Room { fan, shadows, scratch, .. } = room;

@@ -41,7 +41,10 @@ pub(crate) trait Lanes: Copy {
     /// Bit i is set where lane i of `self` is less than that of `other`; false for NaN.
     fn lt(self, other: Self) -> u32;
     /// Lane i of `yes` where bit i of the comparison `self < limit` holds, else of `no`.
-    fn select_lt(self, limit: Self, yes: Self, no: Self) -> Self;
+    #[inline(always)]
+    fn select_lt(self, limit: Self, yes: Self, no: Self) -> Self {
+        Self::select(self.lt(limit), yes, no)
+    }
     /// Lane i of `yes` where bit i of `mask` is set, else of `no`.
     fn select(mask: u32, yes: Self, no: Self) -> Self;
     /// Bit i is set where lane i of `self` has the bits of that of `other`.

@@ -247,10 +247,6 @@ impl Lanes for Avx512 {
         unsafe { u32::from(_mm256_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0)) }
     }
     #[inline(always)]
-    fn select_lt(self, limit: Self, yes: Self, no: Self) -> Self {
-        Self::select(self.lt(limit), yes, no)
-    }
-    #[inline(always)]
     fn select(mask: u32, yes: Self, no: Self) -> Self {
         Avx512(unsafe { _mm256_mask_blend_ps(mask as u8, no.0, yes.0) })
     }
@@ -327,10 +323,6 @@ impl Lanes for Wide {
     #[inline(always)]
     fn lt(self, other: Self) -> u32 {
         unsafe { u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0)) }
-    }
-    #[inline(always)]
-    fn select_lt(self, limit: Self, yes: Self, no: Self) -> Self {
-        Self::select(self.lt(limit), yes, no)
     }
     #[inline(always)]
     fn select(mask: u32, yes: Self, no: Self) -> Self {
