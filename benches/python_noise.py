@@ -34,9 +34,11 @@ def contestants() -> dict[str, tuple[Callable[[], object], float]]:
     points = np.stack((x, y, z), axis=-1)
     columns = np.stack((x, y, z)).transpose(1, 2, 3, 0)
     del x, y, z
+    grid = noise.Grid(axis(), axis(), axis())
     found: dict[str, tuple[Callable[[], object], float]] = {
         "jaspe.noise.perlin(points)": (lambda: noise.perlin(points), 1.0),
         "the same, coordinates in planes": (lambda: noise.perlin(columns), 1.0),
+        "jaspe.noise.perlin(Grid(x, y, z))": (lambda: noise.perlin(grid), 1.0),
         "jaspe.noise.simplex(points)": (lambda: noise.simplex(points), 1.0),
     }
     try:

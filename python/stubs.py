@@ -35,6 +35,8 @@ from typing import Any, Literal, Sequence, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 
+from ._jaspe import Grid
+
 __all__ = {names}
 
 _Basis = Literal[{bases}]
@@ -69,7 +71,7 @@ def noises() -> str:
     parts = [HEAD.format(names=repr(noise.__all__).replace("'", '"'), bases=bases)]
     for name in noise.__all__:
         function = getattr(noise, name)
-        if name == "names":
+        if name in ("Grid", "names"):
             continue
         if name != function.__name__:
             parts.append(f"{name} = {function.__name__}\n")

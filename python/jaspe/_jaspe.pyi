@@ -8,7 +8,7 @@ from ._errors import Diagnostic
 from ._maps import Maps
 from ._progress import Progress
 
-__all__ = ["Image", "Scene", "Texture", "__version__", "_texture", "declarations", "noise"]
+__all__ = ["Grid", "Image", "Scene", "Texture", "__version__", "_texture", "declarations", "noise"]
 
 __version__: str
 
@@ -35,6 +35,15 @@ def noise(
     warp: Union[float, Sequence[float], None] = None,
 ) -> Any: ...
 def _texture(name: str, parameters: dict[str, Any]) -> Texture: ...
+@final
+class Grid:
+    def __new__(cls, *axes: ArrayLike) -> Grid: ...
+    @property
+    def axes(self) -> tuple[NDArray[np.float32], ...]: ...
+    @property
+    def shape(self) -> tuple[int, ...]: ...
+    def points(self) -> NDArray[np.float32]: ...
+    def __array__(self, dtype: Optional[DTypeLike] = None, copy: Optional[bool] = None) -> NDArray[Any]: ...
 @final
 class Image:
     def __new__(

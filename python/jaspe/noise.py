@@ -11,6 +11,12 @@ double precision; single precision is many times as fast. The interpreter's lock
     >>> value.shape, gradient.shape
     ((5, 7), (5, 7, 3))
 
+On a grid, give `Grid(x, y, z)` in place of points: it needs no array of them, and takes a fraction of the time.
+
+    >>> x, y = np.arange(640) / 40, np.arange(480) / 40
+    >>> fbm(Grid(x, y), octaves=4).shape
+    (480, 640)
+
 The noises are one function each: see `names()`. The sums add up octaves of any of them: `basis="simplex"`. What they are,
 with formulas, sources and statistics, stands in docs/noise.md.
 """
@@ -24,6 +30,7 @@ import inspect
 from typing import Any, Callable
 
 from . import _jaspe
+from ._jaspe import Grid
 
 #: The parameters of every function: name, default, what it is.
 _COMMON: list[tuple[str, Any, str]] = [
@@ -56,7 +63,7 @@ _WARP: list[tuple[str, Any, str]] = [
     ("warp", None, "Displace the points so far by the same field first, in their own units; again for each number of a sequence."),
 ]
 
-__all__: list[str] = []
+__all__: list[str] = ["Grid"]
 
 
 def names() -> list[str]:
@@ -81,7 +88,7 @@ def _documentation(kind: str, entry: dict[str, Any]) -> str:
     if kind == "bases":
         ranges = [f"from {least} to {most}" for least, most, _, _ in entry["statistics"]]
         lines += ["Range in one to four dimensions: " + "; ".join(ranges) + ".", ""]
-    lines += ["- `points`: an array whose last axis holds the coordinates."]
+    lines += ["- `points`: an array whose last axis holds the coordinates, or a `Grid`."]
     lines += [f"- `{name}`: {text}" for name, _, text in _parameters(kind, entry["name"])]
     return "\n".join(lines)
 

@@ -3,7 +3,9 @@ from typing import Any, Literal, Sequence, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["perlin", "improved", "classic", "lattice", "value", "simplex", "cellular", "white", "fbm", "turbulence", "ridged", "hybrid", "names"]
+from ._jaspe import Grid
+
+__all__ = ["Grid", "perlin", "improved", "classic", "lattice", "value", "simplex", "cellular", "white", "fbm", "turbulence", "ridged", "hybrid", "names"]
 
 _Basis = Literal["improved", "classic", "lattice", "value", "simplex", "cellular", "white", "perlin"]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import pickle
 import subprocess
@@ -235,3 +236,56 @@ def test_functions_are_documented_and_pickle() -> None:
         assert function.__doc__
         assert pickle.loads(pickle.dumps(function)) is function
     assert "Perlin" in str(noise.perlin.__doc__)
+
+
+@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("dimensions", [1, 2, 3, 4])
+def test_a_grid_is_its_points(name: str, dimensions: int) -> None:
+    lengths = [50, 30, 60, 4][:dimensions]
+    axes = [np.linspace(-1, 2 + axis, length) for axis, length in enumerate(lengths)]
+    grid = noise.Grid(*axes)
+    assert grid.shape == tuple(reversed(lengths))
+    points = grid.points()
+    assert points.dtype == np.float32 and points.shape == (*grid.shape, dimensions)
+    assert points[(1,) * dimensions].tolist() == [np.float32(axis[1]) for axis in axes]
+    function = getattr(noise, name)
+    several = {} if name in BASES else {"octaves": 3}
+    values = function(grid, seed=3, **several)
+    assert values.dtype == np.float32 and values.shape == grid.shape and values.flags.c_contiguous
+    exact = function(points, seed=3, **several)
+    assert np.abs(values - exact).max() <= (2e-6 if name in BASES else 2e-6 * 17.5)
+    if name in ("simplex", "cellular", "white"):
+        assert np.array_equal(values, exact)
+    value, gradient = function(grid, seed=3, gradient=True, **several)
+    assert np.array_equal(value, exact) and gradient.shape == points.shape
+
+
+def test_a_grid_keeps_its_bits_whatever_the_threads() -> None:
+    grid = noise.Grid(np.arange(300) * 0.02, np.arange(200) * 0.03, np.arange(20) * 0.1)
+    script = (
+        "import numpy as np; from jaspe import noise; import hashlib;"
+        "grid = noise.Grid(np.arange(300) * 0.02, np.arange(200) * 0.03, np.arange(20) * 0.1);"
+        "print(hashlib.sha256(noise.fbm(grid, octaves=3).tobytes()).hexdigest())"
+    )
+    environment = {**os.environ, "RAYON_NUM_THREADS": "1"}
+    one = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
+    assert hashlib.sha256(noise.fbm(grid, octaves=3).tobytes()).hexdigest() == one.stdout.strip()
+
+
+def test_grids_that_are_refused_say_why() -> None:
+    for axes, message in [
+        ((), "a grid has one to four axes, found 0; for instance Grid"),
+        (([1.0], [2.0], [3.0], [4.0], [5.0]), "one to four axes, found 5"),
+        (([[1.0, 2.0]],), r"x: expected the coordinates along one axis, found an array of shape \(1, 2\)"),
+        (([1.0], 2.0), r"y: expected the coordinates along one axis, found an array of shape \(\)"),
+        (([1.0], ["a"]), "y: coordinates are real numbers"),
+        ((np.zeros(2**21, np.float32),) * 3, "larger than any array"),
+    ]:
+        with pytest.raises((TypeError, ValueError), match=message):
+            untyped.Grid(*axes)
+    with pytest.raises(ValueError, match="found 3 for points of 2 coordinates"):
+        noise.perlin(noise.Grid([0.5], [0.5]), period=(1, 2, 3))
+    assert noise.perlin(noise.Grid([], [0.5])).shape == (1, 0)
+    grid = pickle.loads(pickle.dumps(noise.Grid([0.5, 1], [0.25], [7])))
+    assert repr(grid) == "<jaspe.noise.Grid of 2 × 1 × 1 points>"
+    assert np.array_equal(grid, [[[[0.5, 0.25, 7], [1, 0.25, 7]]]])

@@ -58,7 +58,7 @@
 //! Sums add octaves plainly, by their absolute value, or as multifractals ([`Combine`]), with any lacunarity and gain; the
 //! last octave may fade in ([`Sum::with_octaves`]), and [`Sum::fill_filtered`] fades what a sample's footprint cannot resolve.
 //! [`Noise::fill_with_gradient`] and [`Sum::fill_with_gradient`] give exact gradients with the values. [`Noise::fill_grid`] and
-//! [`Sum::fill_grid`] are made for uniform grids. A [`Warp`] displaces the points of one [`Field`] by another.
+//! [`Sum::fill_grid`] are made for uniform grids, a [`Raster`] for other grids and for several threads. A [`Warp`] displaces the points of one [`Field`] by another.
 //!
 //! # Promises
 //!
@@ -101,7 +101,7 @@ mod warp;
 pub use basis::Basis;
 pub use basis::cellular::{Cellular, Feature, Metric};
 pub use declaration::{Declaration, Statistics};
-pub use grid::Grid;
+pub use grid::{Grid, Raster};
 pub use noise::{Noise, PeriodError};
 pub use number::{Dual, Integer, Mask, Real};
 pub use recipe::{Recipe, RecipeError};

@@ -1,7 +1,7 @@
 //! Uniform grids against the evaluation point by point.
 
 use jaspe_noise::simd::Level;
-use jaspe_noise::{Basis, Combine, Grid, Noise, Sum};
+use jaspe_noise::{Basis, Combine, Field, Grid, Noise, Raster, Sum, Warp};
 
 /// The sums on a grid, point by point.
 fn point_by_point<const D: usize>(sum: &Sum, grid: &Grid<D>) -> Vec<f32> {
@@ -67,6 +67,55 @@ fn grids_of_any_kind_have_values() {
     assert!(Grid { origin: [0.0; 2], step: [0.1; 2], count: [0, 7] }.is_empty());
     let none = Sum::new(Noise::new(Basis::Improved, 0), Combine::Plain, 0);
     check(&none, &Grid { origin: [0.0; 2], step: [0.1; 2], count: [9, 7] }, 0.0);
+}
+
+#[test]
+fn parts_of_a_grid_are_the_whole() {
+    let sum = Sum::new(Noise::new(Basis::Improved, 5), Combine::Absolute, 3);
+    let warp = Warp { source: sum.clone().into(), by: sum.clone().into(), amount: 0.2 };
+    let axis = |count: usize, step: f32| (0..count).map(|i| i as f32 * step - 0.7).collect::<Vec<f32>>();
+    let grids = [
+        vec![axis(50, 0.1)],
+        vec![axis(37, 0.1), axis(19, 0.07)],
+        vec![axis(37, 0.1), axis(6, 0.07), axis(11, 0.13)],
+        // Uneven, and point by point: backwards, or in four dimensions.
+        vec![axis(9, 0.1), vec![0.0, 0.01, 0.2, 0.2, 0.21], axis(4, 0.1)],
+        vec![axis(9, 0.1), vec![0.3, 0.1, 7.0], axis(4, 0.1)],
+        vec![axis(9, 0.1), axis(3, 0.1), axis(4, 0.1), axis(5, 0.1)],
+    ];
+    for field in [Field::from(sum), Field::from(warp)] {
+        for axes in &grids {
+            let raster = Raster::new(field.clone(), axes.clone());
+            let (planes, plane) = (raster.planes(), raster.plane_len());
+            assert_eq!(planes * plane, axes.iter().map(Vec::len).product::<usize>());
+            let mut whole = vec![f32::MAX; planes * plane];
+            raster.fill(0..planes, &mut whole);
+            for start in (0..planes).step_by(3) {
+                let part = start..planes.min(start + 3);
+                let mut values = vec![f32::MAX; part.len() * plane];
+                raster.fill(part.clone(), &mut values);
+                assert_eq!(values, whole[part.start * plane..part.end * plane], "{axes:?}, {part:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn large_grids_which_pass_the_caches_by_are_the_same() {
+    let axis = |count: usize| (0..count).map(|i| i as f32 * 0.01).collect::<Vec<f32>>();
+    let (width, height) = (2051, 2100);
+    let raster = Raster::new(Noise::new(Basis::Improved, 0), vec![axis(width), axis(height)]);
+    for level in Level::ALL {
+        for shift in 0..2 {
+            let mut whole = vec![f32::MAX; shift + width * height];
+            raster.fill_at(level, 0..height, &mut whole[shift..]);
+            let mut part = vec![f32::MAX; 7 * width];
+            for (rows, values) in whole[shift..].chunks_exact(7 * width).enumerate().step_by(13) {
+                raster.fill_at(level, 7 * rows..7 * rows + 7, &mut part);
+                assert!(part == values, "{level:?}, rows from {}", 7 * rows);
+            }
+        }
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 mod bake;
 mod error;
+mod grid;
 mod image;
 mod noise;
 mod points;
@@ -32,6 +33,8 @@ mod _jaspe {
 
     #[pymodule_export]
     use super::declarations;
+    #[pymodule_export]
+    use super::grid::Grid;
     #[pymodule_export]
     use super::image::Image;
     #[pymodule_export]

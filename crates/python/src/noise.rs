@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::unknown_word;
+use crate::grid::Grid;
 use crate::points::{self, CHUNK, Coordinate, Points};
 
 /// The value of a noise, or of a sum over its octaves, at every point.
@@ -33,11 +34,16 @@ pub fn noise<'py>(
     jitter: f64,
     warp: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let points = Points::new(points, &[1, 2, 3, 4])?;
+    let py = points.py();
+    let place = match points.cast::<Grid>() {
+        // (Exact gradients are worked out point by point.)
+        Ok(grid) if !gradient => Place::Grid(grid.get()),
+        _ => Place::Points(Points::new(points, &[1, 2, 3, 4])?),
+    };
     let recipe = Recipe {
         basis: word("basis", basis, Basis::from_name(basis), Basis::ALL.iter().map(|basis| basis.name()))?,
         seed: seed.map_or(Ok(0), seed_of)?,
-        period: periods(period, points.dimensions())?,
+        period: periods(period, place.dimensions())?,
         cellular: Cellular {
             metric: word("metric", metric, Metric::from_name(metric), Metric::ALL.iter().map(|m| m.name()))?,
             feature: word("feature", feature, Feature::from_name(feature), Feature::ALL.iter().map(|f| f.name()))?,
@@ -56,9 +62,25 @@ pub fn noise<'py>(
         warp: amounts(warp)?,
     };
     let field = recipe.field().map_err(|error| PyValueError::new_err(error.to_string()))?;
-    match points {
-        Points::Single(points) => over_dimensions(&points, &field, gradient),
-        Points::Double(points) => over_dimensions(&points, &field, gradient),
+    match place {
+        Place::Points(Points::Single(points)) => over_dimensions(&points, &field, gradient),
+        Place::Points(Points::Double(points)) => over_dimensions(&points, &field, gradient),
+        Place::Grid(grid) => grid.evaluate(py, field),
+    }
+}
+
+/// Where a noise is evaluated.
+enum Place<'a, 'py> {
+    Points(Points<'py>),
+    Grid(&'a Grid),
+}
+
+impl Place<'_, '_> {
+    fn dimensions(&self) -> usize {
+        match self {
+            Place::Points(points) => points.dimensions(),
+            Place::Grid(grid) => grid.dimensions(),
+        }
     }
 }
 

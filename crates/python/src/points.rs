@@ -97,22 +97,25 @@ fn listed(numbers: &[usize]) -> String {
 }
 
 /// A shape as Python writes it.
-fn tuple(shape: &[usize]) -> String {
+pub fn tuple(shape: &[usize]) -> String {
     match shape {
         [side] => format!("({side},)"),
         _ => format!("({})", shape.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
     }
 }
 
-/// An array for results, of the shape of the points without their last axis, with these axes added. What it holds is left over
-/// from elsewhere, until all of it is written. (NumPy asks for large pages where it need not clear them: with zeros, the system would
-/// take longer for the pages than the noise for the values.)
+/// An array for results, of the shape of the points without their last axis, with these axes added: see [`array`].
 pub fn results<'py, T: Element>(
     py: Python<'py>,
     points: &[usize],
     added: &[usize],
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    let shape = [&points[..points.len() - 1], added].concat();
+    array(py, &[&points[..points.len() - 1], added].concat())
+}
+
+/// An array of this shape for results. What it holds is left over from elsewhere, until all of it is written. (NumPy asks for large
+/// pages where it need not clear them: with zeros, the system would take longer for the pages than the noise for the values.)
+pub fn array<'py, T: Element>(py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
     let numpy = py.import(intern!(py, "numpy"))?;
     let array = numpy.call_method1(intern!(py, "empty"), (PyTuple::new(py, shape)?, T::get_dtype(py)))?;
     Ok(array.cast_into()?)

@@ -7,6 +7,7 @@ use crate::noise::Noise;
 pub(super) const PADDING: usize = 16;
 
 /// An axis of a grid, times the frequency of an octave.
+#[derive(Debug, Clone)]
 pub(super) struct Axis {
     /// The lattice coordinates, wrapped at the period, from that below the first point to that above the last one.
     pub lattice: Vec<i32>,

@@ -7,10 +7,13 @@
 mod axis;
 mod rows;
 
+use std::ops::Range;
+
 use crate::basis::Basis;
 use crate::noise::Noise;
 use crate::simd::{self, Level};
 use crate::sum::{Combine, Sum};
+use crate::warp::Field;
 use axis::Axis;
 use rows::{Octave, Rows};
 
@@ -46,18 +49,131 @@ impl<const D: usize> Grid<D> {
         (f64::from(self.origin[axis]) + index as f64 * f64::from(self.step[axis])) as f32
     }
 
-    /// The coordinates along an axis.
-    fn coordinates(&self, axis: usize) -> Vec<f32> {
-        (0..self.count[axis]).map(|index| self.coordinate(axis, index)).collect()
+    /// The coordinates along each axis.
+    fn axes(&self) -> Vec<Vec<f32>> {
+        let along = |axis| (0..self.count[axis]).map(|index| self.coordinate(axis, index)).collect();
+        (0..D).map(along).collect()
     }
 }
 
-impl Noise {
-    /// The values on a grid, x first, then y, and so on.
+/// A field on a grid of any coordinates along each axis, made ready once to be evaluated as a whole or in parts: by several
+/// threads, say.
+///
+/// Sums of improved, classic, lattice and value noise in up to three dimensions, on axes that rise from point to point by less than a
+/// cell of every octave, are evaluated by cells: within 2e-6 times the sum of the amplitudes of [`Field::fill`] (multifractals: ten times
+/// that), from which they differ by rounding (the bits are the same with every set of instructions, and in whatever
+/// parts). All else has the bits of [`Field::fill`].
+#[derive(Debug, Clone)]
+pub struct Raster {
+    field: Field,
+    axes: Vec<Vec<f32>>,
+    /// The octaves prepared for an evaluation by cells, if each of them can be.
+    by_cells: Option<(Combine, Vec<Octave>)>,
+}
+
+impl Raster {
+    /// The field at every combination of these coordinates along x, y, and so on.
     ///
-    /// Improved, classic, lattice and value noise in up to three dimensions, on grids finer than their cells, are evaluated
-    /// by cells: within 2e-6 of [`Noise::fill`], from which they differ by rounding (the bits are the same with every
-    /// set of instructions). All else has the bits of [`Noise::fill`].
+    /// # Panics
+    /// Unless there are one to four axes.
+    pub fn new(field: impl Into<Field>, axes: Vec<Vec<f32>>) -> Self {
+        assert!((1..=4).contains(&axes.len()), "a grid has one to four axes");
+        let field = field.into();
+        let by_cells = match &field {
+            Field::Noise(noise) => by_cells(&Sum::new(noise.clone(), Combine::Plain, 1), &axes),
+            Field::Sum(sum) => by_cells(sum, &axes),
+            Field::Warp(_) => None,
+        };
+        Raster { field, axes, by_cells }
+    }
+
+    /// The number of parts that can be evaluated by themselves: the length of the last axis (of one axis alone, 1).
+    pub fn planes(&self) -> usize {
+        if self.axes.len() == 1 { 1 } else { self.axes[self.axes.len() - 1].len() }
+    }
+
+    /// The number of points in each of those.
+    ///
+    /// # Panics
+    /// When it is beyond `usize`.
+    pub fn plane_len(&self) -> usize {
+        let inner = &self.axes[..(self.axes.len() - 1).max(1)];
+        let product = inner.iter().try_fold(1usize, |product, axis| product.checked_mul(axis.len()));
+        product.expect("a plane has at most `usize::MAX` points")
+    }
+
+    /// The values in some planes, x first, then y, and so on.
+    ///
+    /// # Panics
+    /// When there are no such planes, or `values` has another length than they have points.
+    pub fn fill(&self, planes: Range<usize>, values: &mut [f32]) {
+        self.fill_at(simd::level(), planes, values);
+    }
+
+    /// [`Raster::fill`] with the instructions of a level, at most those of the machine. For tests and measurements.
+    ///
+    /// # Panics
+    /// When there are no such planes, or `values` has another length than they have points.
+    pub fn fill_at(&self, level: Level, planes: Range<usize>, values: &mut [f32]) {
+        assert!(planes.end <= self.planes(), "there are so many planes");
+        assert_eq!(values.len(), planes.len() * self.plane_len(), "there is a value for each point of the planes");
+        if values.is_empty() {
+            return;
+        }
+        let Some((combine, octaves)) = &self.by_cells else {
+            return match self.axes.len() {
+                1 => self.fill_points::<1>(level, planes, values),
+                2 => self.fill_points::<2>(level, planes, values),
+                3 => self.fill_points::<3>(level, planes, values),
+                _ => self.fill_points::<4>(level, planes, values),
+            };
+        };
+        let rows = match self.axes.len() {
+            1 => [0..1, 0..1],
+            2 => [planes, 0..1],
+            _ => [0..self.axes[1].len(), planes],
+        };
+        let width = self.axes[0].len();
+        simd::run_wide(level, Rows { combine: *combine, octaves, width, rows, values });
+    }
+
+    /// The values point by point, row by row.
+    fn fill_points<const D: usize>(&self, level: Level, planes: Range<usize>, values: &mut [f32]) {
+        let width = self.axes[0].len();
+        let mut columns: [Vec<f32>; D] = std::array::from_fn(|_| vec![0.0; width]);
+        columns[0].copy_from_slice(&self.axes[0]);
+        let first = planes.start * (self.plane_len() / width);
+        for (row, values) in values.chunks_mut(width).enumerate() {
+            let mut rest = first + row;
+            for (column, coordinates) in columns.iter_mut().zip(&self.axes).skip(1) {
+                column.fill(coordinates[rest % coordinates.len()]);
+                rest /= coordinates.len();
+            }
+            self.field.fill_at(level, columns.each_ref().map(Vec::as_slice), values);
+        }
+    }
+}
+
+/// The octaves of a sum prepared for an evaluation by cells, if each of them can be.
+fn by_cells(sum: &Sum, axes: &[Vec<f32>]) -> Option<(Combine, Vec<Octave>)> {
+    let noise = sum.noise();
+    let may_be = matches!(noise.basis(), Basis::Improved | Basis::Classic | Basis::Lattice | Basis::Value);
+    if !may_be || axes.len() > 3 {
+        return None;
+    }
+    let prepare = |(frequency, amplitude): (f64, f64)| {
+        let axis = |index: usize| {
+            let coordinates = axes.get(index).map_or(&[0.0][..], Vec::as_slice);
+            Axis::new(noise, index, coordinates, frequency)
+        };
+        Some(Octave { noise: noise.clone(), frequency, amplitude, axes: [axis(0)?, axis(1)?, axis(2)?] })
+    };
+    let octaves: Option<Vec<Octave>> = sum.frequencies_and_amplitudes().map(prepare).collect();
+    Some((sum.combine(), octaves?))
+}
+
+impl Noise {
+    /// The values on a grid, x first, then y, and so on: as [`Raster`] says.
     ///
     /// # Panics
     /// When `values` has another length than the grid.
@@ -70,13 +186,12 @@ impl Noise {
     /// # Panics
     /// When `values` has another length than the grid.
     pub fn fill_grid_at<const D: usize>(&self, level: Level, grid: &Grid<D>, values: &mut [f32]) {
-        Sum::new(self.clone(), Combine::Plain, 1).fill_grid_at(level, grid, values);
+        fill_grid_at(self.clone().into(), level, grid, values);
     }
 }
 
 impl Sum {
-    /// The sums on a grid, x first, then y, and so on: by cells as [`Noise::fill_grid`] where every octave can be, within
-    /// 2e-6 times the sum of the amplitudes of [`Sum::fill`] (multifractals: ten times that).
+    /// The sums on a grid, x first, then y, and so on: as [`Raster`] says.
     ///
     /// # Panics
     /// When `values` has another length than the grid.
@@ -89,52 +204,12 @@ impl Sum {
     /// # Panics
     /// When `values` has another length than the grid.
     pub fn fill_grid_at<const D: usize>(&self, level: Level, grid: &Grid<D>, values: &mut [f32]) {
-        assert_eq!(values.len(), grid.len(), "there is a value for each point of the grid");
-        if values.is_empty() {
-            return;
-        }
-        let coordinates: [Vec<f32>; D] = std::array::from_fn(|axis| grid.coordinates(axis));
-        match self.octaves_by_cells(&coordinates) {
-            Some(octaves) => {
-                let count = |axis: usize| coordinates.get(axis).map_or(1, Vec::len);
-                let counts = [count(0), count(1)];
-                simd::run_wide(level, Rows { combine: self.combine(), octaves, counts, values });
-            }
-            None => self.fill_points(level, &coordinates, values),
-        }
+        fill_grid_at(self.clone().into(), level, grid, values);
     }
+}
 
-    /// The octaves prepared for an evaluation by cells, if each of them can be.
-    fn octaves_by_cells(&self, coordinates: &[Vec<f32>]) -> Option<Vec<Octave<'_>>> {
-        let noise = self.noise();
-        let by_cells = matches!(noise.basis(), Basis::Improved | Basis::Classic | Basis::Lattice | Basis::Value);
-        if !by_cells || coordinates.len() > 3 {
-            return None;
-        }
-        let zero = vec![0.0];
-        let prepare = |(frequency, amplitude): (f64, f64)| {
-            let axis = |index: usize| {
-                let coordinates = coordinates.get(index).unwrap_or(&zero);
-                Axis::new(noise, index, coordinates, frequency)
-            };
-            Some(Octave { noise, frequency, amplitude, axes: [axis(0)?, axis(1)?, axis(2)?] })
-        };
-        self.frequencies_and_amplitudes().map(prepare).collect()
-    }
-
-    /// The sums point by point, row by row.
-    fn fill_points<const D: usize>(&self, level: Level, coordinates: &[Vec<f32>; D], values: &mut [f32]) {
-        let width = coordinates[0].len();
-        let mut columns: [Vec<f32>; D] = std::array::from_fn(|_| vec![0.0; width]);
-        columns[0].copy_from_slice(&coordinates[0]);
-        for (row, values) in values.chunks_mut(width).enumerate() {
-            let mut rest = row;
-            for axis in 1..D {
-                let count = coordinates[axis].len();
-                columns[axis].fill(coordinates[axis][rest % count]);
-                rest /= count;
-            }
-            self.fill_at(level, columns.each_ref().map(Vec::as_slice), values);
-        }
-    }
+fn fill_grid_at<const D: usize>(field: Field, level: Level, grid: &Grid<D>, values: &mut [f32]) {
+    assert_eq!(values.len(), grid.len(), "there is a value for each point of the grid");
+    let raster = Raster::new(field, grid.axes());
+    raster.fill_at(level, 0..raster.planes(), values);
 }

@@ -6,6 +6,8 @@
 //! P = lerp(u, c₀ + bx₀ f, c₁ + bx₁ (f − 1)) and Q = lerp(u, by₀, by₁). A point between two such rows, with the offsets g
 //! and g − 1 and the curve v, then is (1 − v) P₀ + (1 − v) g Q₀ + v P₁ + v (g − 1) Q₁.
 
+use std::ops::Range;
+
 use super::axis::{Axis, PADDING};
 use crate::basis::{Basis, Tables, hash};
 use crate::noise::Noise;
@@ -14,8 +16,9 @@ use crate::simd::{Vector, Wide};
 use crate::sum::{Combine, Partial};
 
 /// An octave of a sum on a grid.
-pub(super) struct Octave<'a> {
-    pub noise: &'a Noise,
+#[derive(Debug, Clone)]
+pub(super) struct Octave {
+    pub noise: Noise,
     pub frequency: f64,
     pub amplitude: f64,
     /// x, y and z.
@@ -25,43 +28,58 @@ pub(super) struct Octave<'a> {
 /// A sum on a grid: work for vectors of any width.
 pub(super) struct Rows<'a> {
     pub combine: Combine,
-    pub octaves: Vec<Octave<'a>>,
-    /// The number of points along x and y.
-    pub counts: [usize; 2],
+    pub octaves: &'a [Octave],
+    /// The number of points along x.
+    pub width: usize,
+    /// Which points along y and z.
+    pub rows: [Range<usize>; 2],
     pub values: &'a mut [f32],
 }
 
 /// So many rows of points are evaluated side by side, if they lie in the same cells.
 const SIDE_BY_SIDE: usize = 4;
 
+/// Grids of so many bytes do not stay in the caches, and are written past them.
+const LARGE: usize = 16 << 20;
+
 impl Wide for Rows<'_> {
     #[inline(always)]
     fn run<V: Vector<LANES>, const LANES: usize>(self) {
-        let [width, height] = self.counts;
+        let (width, [rows, planes]) = (self.width, self.rows);
+        let away = size_of_val(self.values) > LARGE;
+        let mut buffer = vec![0.0; if away { SIDE_BY_SIDE * width } else { 0 }];
         let mut states: Vec<State<V, LANES>> =
             self.octaves.iter().map(|octave| State::new(self.combine, octave)).collect();
-        for (z, plane) in self.values.chunks_mut(width * height).enumerate() {
+        for (z, plane) in planes.zip(self.values.chunks_mut(width * rows.len())) {
             for state in &mut states {
                 state.start_plane(z);
             }
-            let mut y = 0;
-            while y < height {
-                let mut count = SIDE_BY_SIDE.min(height - y);
+            let mut y = rows.start;
+            while y < rows.end {
+                let mut count = SIDE_BY_SIDE.min(rows.end - y);
                 for state in &mut states {
                     state.reach_row(y);
                     count = count.min(state.rows_in_cell(y));
                 }
-                let rows = &mut plane[y * width..];
+                let plane = &mut plane[(y - rows.start) * width..];
+                let values = if away { &mut buffer[..] } else { &mut plane[..] };
                 // (A loop for each way to combine: there is little else in it.)
-                y += match (self.combine, count) {
-                    (Combine::Plain, 4) => add::<V, LANES, 4>(Combine::Plain, &states, y, width, rows),
-                    (Combine::Plain, 2 | 3) => add::<V, LANES, 2>(Combine::Plain, &states, y, width, rows),
-                    (Combine::Plain, _) => add::<V, LANES, 1>(Combine::Plain, &states, y, width, rows),
-                    (Combine::Absolute, 4) => add::<V, LANES, 4>(Combine::Absolute, &states, y, width, rows),
-                    (Combine::Absolute, 2 | 3) => add::<V, LANES, 2>(Combine::Absolute, &states, y, width, rows),
-                    (combine, _) => add::<V, LANES, 1>(combine, &states, y, width, rows),
+                let done = match (self.combine, count) {
+                    (Combine::Plain, 4) => add::<V, LANES, 4>(Combine::Plain, &states, y, width, values),
+                    (Combine::Plain, 2 | 3) => add::<V, LANES, 2>(Combine::Plain, &states, y, width, values),
+                    (Combine::Plain, _) => add::<V, LANES, 1>(Combine::Plain, &states, y, width, values),
+                    (Combine::Absolute, 4) => add::<V, LANES, 4>(Combine::Absolute, &states, y, width, values),
+                    (Combine::Absolute, 2 | 3) => add::<V, LANES, 2>(Combine::Absolute, &states, y, width, values),
+                    (combine, _) => add::<V, LANES, 1>(combine, &states, y, width, values),
                 };
+                if away {
+                    V::copy_away(&buffer[..done * width], &mut plane[..done * width]);
+                }
+                y += done;
             }
+        }
+        if away {
+            V::after_copies();
         }
     }
 }
@@ -119,7 +137,7 @@ struct Lattice {
 
 /// An octave on its way through the rows.
 struct State<'a, V: Real, const LANES: usize> {
-    octave: &'a Octave<'a>,
+    octave: &'a Octave,
     /// The hashes of the lattice points along x, before those of y and z.
     hashes: Vec<i32>,
     /// Those of rows of lattice points, below and above z: of all rows, if the plane is small, or of one.
@@ -146,7 +164,7 @@ const KEPT: usize = 1 << 14;
 
 impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
     #[inline(always)]
-    fn new(combine: Combine, octave: &'a Octave<'a>) -> Self {
+    fn new(combine: Combine, octave: &'a Octave) -> Self {
         let [x, y, z] = &octave.axes;
         let tables = octave.noise.tables();
         let hash = |&coordinate: &i32| match octave.noise.basis() {

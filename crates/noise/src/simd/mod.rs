@@ -377,6 +377,12 @@ pub(crate) trait Vector<const LANES: usize>: Real {
     fn splat(value: f32) -> Self;
     fn load_int(lanes: &[i32; LANES]) -> Self::Int;
     fn store_int(integers: Self::Int, lanes: &mut [i32; LANES]);
+    /// Copies numbers to where they are not needed soon: past the caches, if the machine can. [`Vector::after_copies`] ends it.
+    fn copy_away(from: &[f32], to: &mut [f32]) {
+        to.copy_from_slice(from);
+    }
+    /// Makes what was copied away visible to other threads.
+    fn after_copies() {}
     /// The window's numbers at these places, which are below `LANES`.
     fn expand(window: &[f32; LANES], places: Self::Int) -> Self;
 }

@@ -3,6 +3,8 @@
 //! Hashing reads tables, blending multiplies and adds. The two use other ports of the machine, so the points of the next
 //! step are hashed beside the blends of the current one, and neither waits for the other: across blocks and octaves too.
 
+use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+
 use crate::basis::corners::Corners;
 use crate::basis::improved::blend_codes;
 use crate::number::Dual;
@@ -16,6 +18,9 @@ pub(super) type Sums<'a, const STEP: usize, const N: usize> = [&'a mut [f32; STE
 
 /// Points whose octaves are summed before the next ones: their coordinates and sums stay in the first cache.
 const BLOCK: usize = 512;
+
+/// So many points ahead, coordinates are called for from memory: the machine itself begins anew with every page.
+const AHEAD: usize = 512;
 
 /// One octave of a sum.
 #[derive(Clone, Copy)]
@@ -102,6 +107,7 @@ fn alone<H: Halves<STEP>, const STEP: usize, const N: usize>(
     let last = steps - 1;
     let mut codes = halves.hash::<N>(1.0, point(0));
     for i in 0..last {
+        prefetch([x, y, z], i + AHEAD / STEP);
         let next = (1.0, point(i + 1));
         halves.step::<ALONE, N>(&octave, point(i), sums(outputs, i), &mut codes, next);
     }
@@ -137,10 +143,25 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
                 None => (terms.frequencies[0], last.min(end)),
             };
             for i in start..end {
+                if index == 0 {
+                    prefetch([x, y, z], i + AHEAD / STEP);
+                }
                 let (frequency, next) = if i + 1 == end { after } else { (octave.frequency, i + 1) };
                 let next = (frequency, point(next));
                 halves.step::<USE, N>(&octave, point(i), sums(outputs, i), &mut codes, next);
             }
+        }
+    }
+}
+
+/// Calls for the coordinates of a step from memory. (There need not be such a step: the machine passes over bad addresses.)
+#[inline(always)]
+fn prefetch<const STEP: usize>(points: [&[[f32; STEP]]; 3], step: usize) {
+    for axis in points {
+        let numbers = axis.as_ptr().wrapping_add(step).cast::<i8>();
+        for line in 0..size_of::<[f32; STEP]>() / 64 {
+            // SAFETY: nothing is read.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(numbers.wrapping_add(64 * line)) };
         }
     }
 }

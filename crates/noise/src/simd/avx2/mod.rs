@@ -279,6 +279,23 @@ impl Vector<8> for F32x8 {
         unsafe { _mm256_storeu_si256(lanes.as_mut_ptr().cast(), integers.0) }
     }
     #[inline(always)]
+    fn copy_away(from: &[f32], to: &mut [f32]) {
+        assert_eq!(from.len(), to.len());
+        // SAFETY: vectors are stored where the compiler found room for aligned ones, and read where as many numbers are.
+        let (head, body, tail) = unsafe { to.align_to_mut::<__m256>() };
+        let (first, rest) = from.split_at(head.len());
+        let (middle, last) = rest.split_at(body.len() * 8);
+        head.copy_from_slice(first);
+        for (to, from) in body.iter_mut().zip(middle.as_chunks::<8>().0) {
+            unsafe { _mm256_stream_ps((to as *mut __m256).cast(), _mm256_loadu_ps(from.as_ptr())) };
+        }
+        tail.copy_from_slice(last);
+    }
+    #[inline(always)]
+    fn after_copies() {
+        unsafe { _mm_sfence() }
+    }
+    #[inline(always)]
     fn expand(window: &[f32; 8], places: I32x8) -> Self {
         F32x8(unsafe { _mm256_permutevar8x32_ps(_mm256_loadu_ps(window.as_ptr()), places.0) })
     }
