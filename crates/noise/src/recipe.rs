@@ -91,10 +91,14 @@ impl Recipe {
         let noise = Noise::new(self.basis, self.seed).with_cellular(self.cellular);
         let noise = noise.with_period(self.period).map_err(|error| refuse("period", error.to_string()))?;
         let combine = self.sum.unwrap_or(Combine::Plain);
-        let sum = Sum::new(noise, combine, 0).with_octaves(octaves);
-        let sum = sum.with_lacunarity(self.lacunarity).with_gain(self.gain);
-        let warp = |source, &amount: &f64| Warp { source, by: sum.clone().into(), amount }.into();
-        Ok(self.warp.iter().fold(sum.clone().into(), warp))
+        let field: Field = if combine == Combine::Plain && octaves == 1.0 {
+            noise.into()
+        } else {
+            let sum = Sum::new(noise, combine, 0).with_octaves(octaves);
+            sum.with_lacunarity(self.lacunarity).with_gain(self.gain).into()
+        };
+        let warp = |source, &amount: &f64| Warp { source, by: field.clone(), amount }.into();
+        Ok(self.warp.iter().fold(field.clone(), warp))
     }
 }
 

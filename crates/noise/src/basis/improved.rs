@@ -53,9 +53,7 @@ pub(crate) fn blend_codes<R: Real, const D: usize, const G: bool>(
     let zero = R::constant(0.0);
     let (mut values, mut slopes) = ([zero; 16], [[zero; D]; 16]);
     if D == 3 && !G {
-        let dots = R::cell_dots(codes.first_chunk().expect("sixteen"), [offset[0], offset[1], offset[D - 1]]);
-        values[..8].copy_from_slice(&dots);
-        return blend::<R, D, G>(values, None, &Curve::quintic(&offset));
+        return blend_dots::<R, D, G>(codes, offset, &Curve::quintic(&offset));
     }
     for i in 0..1 << D {
         let from = from_corner(&offset, i);
@@ -73,6 +71,20 @@ pub(crate) fn blend_codes<R: Real, const D: usize, const G: bool>(
         }
     }
     blend::<R, D, G>(values, if G { Some(slopes) } else { None }, &Curve::quintic(&offset))
+}
+
+/// [`blend_codes`] in three dimensions, of the value alone, where the curve is known.
+#[inline(always)]
+pub(crate) fn blend_dots<R: Real, const D: usize, const G: bool>(
+    codes: Corners<R::Int>,
+    offset: [R; D],
+    curve: &Curve<R, D>,
+) -> Dual<R, D> {
+    let dots = R::cell_dots(codes.first_chunk().expect("sixteen"), [offset[0], offset[1], offset[D - 1]]);
+    // (Spelled out: a copy between slices is a call where the compiler does not see this far.)
+    let ([a, b, c, d, e, f, g, h], zero) = (dots, R::constant(0.0));
+    let values = [a, b, c, d, e, f, g, h, zero, zero, zero, zero, zero, zero, zero, zero];
+    blend::<R, D, G>(values, None, curve)
 }
 
 /// The offset from a corner. (D entries, and one more to name.)

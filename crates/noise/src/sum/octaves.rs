@@ -6,7 +6,7 @@ use super::{Judge, Sum};
 use crate::filter::{self, FAINT, FAR, Fade, NEAR};
 use crate::noise::Octave;
 use crate::number::Dual;
-use crate::simd::{self, Level, Task};
+use crate::simd::{self, Level, Task, Vector, Wide};
 
 /// How many points at a time.
 const CHUNK: usize = 256;
@@ -46,55 +46,57 @@ impl Sum {
         gradient: &mut [&mut [f32]],
     ) {
         let fade = Fade::of(self.noise.basis(), self.combine.folds(), D);
-        let mut buffers = Buffers::<D> { scaled: [[0.0; CHUNK]; D], noise: [0.0; CHUNK], slopes: [[0.0; CHUNK]; D] };
+        let mut scaled = [[0.0; CHUNK]; D];
         let mut sides = [0.0; CHUNK];
+        let (mut noise, mut weight) = (Samples::<D>::of(0.0), Samples::of(1.0));
         for start in (0..values.len()).step_by(CHUNK) {
             let at = start..values.len().min(start + CHUNK);
-            let mut partials = [Partial::<f32, D>::new(); CHUNK];
+            let count = at.len();
+            let mut sum = Samples::of(0.0);
+            if !self.combine.is_plain() {
+                weight = Samples::of(1.0);
+            }
             let mut averages;
             for (&frequency, &amplitude) in self.scales.frequencies.iter().zip(&self.scales.amplitudes) {
-                for (scaled, axis) in buffers.scaled.iter_mut().zip(points) {
-                    for (scaled, coordinate) in scaled.iter_mut().zip(&axis[at.clone()]) {
-                        *scaled = coordinate * frequency as f32;
-                    }
+                for (scaled, axis) in scaled.iter_mut().zip(points) {
+                    simd::run(level, Scale { numbers: &axis[at.clone()], factor: frequency as f32, scaled });
                 }
                 if let Some((footprints, _)) = footprints {
-                    for (side, footprint) in sides.iter_mut().zip(&footprints[at.clone()]) {
-                        *side = footprint * frequency as f32;
-                    }
+                    simd::run(
+                        level,
+                        Scale { numbers: &footprints[at.clone()], factor: frequency as f32, scaled: &mut sides },
+                    );
                 }
                 let octave = Octave { noise: &self.noise, frequency };
-                let scaled = buffers.scaled.each_ref().map(|axis| &axis[..at.len()]);
-                let noise = &mut buffers.noise[..at.len()];
+                let points = scaled.each_ref().map(|axis| &axis[..count]);
+                let value = &mut noise.value[..count];
                 let far = |side: &f32| f64::from(*side) > FAR;
-                if footprints.is_some() && sides[..at.len()].iter().all(far) {
+                if footprints.is_some() && sides[..count].iter().all(far) {
                     // Nothing is left but the mean, whatever the noise is.
-                    noise.fill(0.0);
+                    value.fill(0.0);
                 } else if G {
-                    let mut slopes = buffers.slopes.each_mut().map(|axis| &mut axis[..at.len()]);
-                    octave.fill(level, &scaled, noise, &mut slopes);
+                    let mut slopes = noise.gradient.each_mut().map(|axis| &mut axis[..count]);
+                    octave.fill(level, &points, value, &mut slopes);
                 } else {
-                    octave.fill(level, &scaled, noise, &mut []);
+                    octave.fill(level, &points, value, &mut []);
                 }
                 let near = |side: &f32| f64::from(*side) <= FAINT;
                 let filtered = match footprints {
                     None => Filtered::Not,
-                    Some((_, Judge::Point)) if sides[..at.len()].iter().all(near) => Filtered::Not,
+                    Some((_, Judge::Point)) if sides[..count].iter().all(near) => Filtered::Not,
                     Some((_, Judge::Point)) => Filtered::Alone(&sides),
                     Some((_, Judge::Parts)) => {
-                        averages = self.average_parts::<D>(level, &octave, fade, &sides[..at.len()], &buffers.scaled);
+                        averages = self.average_parts::<D>(level, &octave, fade, &sides[..count], &scaled);
                         Filtered::Parts(&sides, &averages)
                     }
                 };
-                let (combine, buffers) = (self.combine, &buffers);
-                let partials = &mut partials[..at.len()];
-                simd::run(level, Add::<D, G> { combine, frequency, amplitude, fade, filtered, buffers, partials });
+                let (combine, noise, sum, weight) = (self.combine, &noise, &mut sum, &mut weight);
+                let add = Add::<D, G> { count, combine, frequency, amplitude, fade, filtered, noise, sum, weight };
+                simd::run_wide(level, add);
             }
-            for (i, partial) in at.zip(&partials) {
-                values[i] = partial.sum.value;
-                for (axis, part) in gradient.iter_mut().zip(partial.sum.gradient) {
-                    axis[i] = part;
-                }
+            values[at.clone()].copy_from_slice(&sum.value[..count]);
+            for (axis, sums) in gradient.iter_mut().zip(&sum.gradient) {
+                axis[at.clone()].copy_from_slice(&sums[..count]);
             }
         }
     }
@@ -152,11 +154,53 @@ impl Task for AddPart<'_> {
     }
 }
 
-/// Points times the frequency, their noise and its gradient.
-struct Buffers<const D: usize> {
-    scaled: [[f32; CHUNK]; D],
-    noise: [f32; CHUNK],
-    slopes: [[f32; CHUNK]; D],
+/// Multiplies numbers.
+struct Scale<'a> {
+    numbers: &'a [f32],
+    factor: f32,
+    scaled: &'a mut [f32; CHUNK],
+}
+
+impl Task for Scale<'_> {
+    #[inline(always)]
+    fn run(self) {
+        for (scaled, number) in self.scaled.iter_mut().zip(self.numbers) {
+            *scaled = number * self.factor;
+        }
+    }
+}
+
+/// Values at the points of a chunk, and gradients.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Samples<const D: usize> {
+    value: [f32; CHUNK],
+    gradient: [[f32; CHUNK]; D],
+}
+
+impl<const D: usize> Samples<D> {
+    /// The same value everywhere.
+    fn of(value: f32) -> Self {
+        Samples { value: [value; CHUNK], gradient: [[0.0; CHUNK]; D] }
+    }
+
+    /// Those of one vector.
+    #[inline(always)]
+    fn load<V: Vector<LANES>, const LANES: usize, const G: bool>(&self, vector: usize) -> Dual<V, D> {
+        let mut sample = Dual { value: V::load(&self.value.as_chunks().0[vector]), gradient: [V::constant(0.0); D] };
+        for axis in 0..if G { D } else { 0 } {
+            sample.gradient[axis] = V::load(&self.gradient[axis].as_chunks().0[vector]);
+        }
+        sample
+    }
+
+    #[inline(always)]
+    fn store<V: Vector<LANES>, const LANES: usize, const G: bool>(&mut self, vector: usize, sample: Dual<V, D>) {
+        sample.value.store(&mut self.value.as_chunks_mut().0[vector]);
+        for axis in 0..if G { D } else { 0 } {
+            sample.gradient[axis].store(&mut self.gradient[axis].as_chunks_mut().0[vector]);
+        }
+    }
 }
 
 /// The sides of footprints in cells, and what their noise is judged by.
@@ -170,33 +214,43 @@ enum Filtered<'a> {
 
 /// Adds an octave at the points of a chunk.
 struct Add<'a, const D: usize, const G: bool> {
+    count: usize,
     combine: Combine,
     frequency: f64,
     amplitude: f64,
     fade: Fade,
     filtered: Filtered<'a>,
-    buffers: &'a Buffers<D>,
-    partials: &'a mut [Partial<f32, D>],
+    noise: &'a Samples<D>,
+    sum: &'a mut Samples<D>,
+    /// What a multifractal sum multiplies the octave by.
+    weight: &'a mut Samples<D>,
 }
 
-impl<const D: usize, const G: bool> Task for Add<'_, D, G> {
+impl<const D: usize, const G: bool> Wide for Add<'_, D, G> {
     #[inline(always)]
-    fn run(self) {
-        for (i, partial) in self.partials.iter_mut().enumerate() {
-            let mut noise = Dual { value: self.buffers.noise[i], gradient: [0.0; D] };
-            for axis in 0..if G { D } else { 0 } {
-                noise.gradient[axis] = self.buffers.slopes[axis][i];
-            }
-            let mut noise = self.combine.fold::<f32, D, G>(noise);
+    fn run<V: Vector<LANES>, const LANES: usize>(self) {
+        // (The last vector may be longer than the points; there is room for it.)
+        for vector in 0..self.count.div_ceil(LANES) {
+            let mut noise = self.combine.fold::<V, D, G>(self.noise.load::<V, LANES, G>(vector));
+            let load = |numbers: &[f32; CHUNK]| V::load(&numbers.as_chunks().0[vector]);
             match self.filtered {
                 Filtered::Not => {}
-                Filtered::Alone(sides) => noise.value = self.fade.apply_alone(noise.value, sides[i]),
+                Filtered::Alone(sides) => noise.value = self.fade.apply_alone(noise.value, load(sides)),
                 Filtered::Parts(sides, averages) => {
-                    let whole = self.fade.apply(noise.value, sides[i]);
-                    noise.value = self.fade.blend(whole, averages[i], sides[i]);
+                    let whole = self.fade.apply(noise.value, load(sides));
+                    noise.value = self.fade.blend(whole, load(averages), load(sides));
                 }
             }
+            let mut partial = Partial::<V, D>::new();
+            partial.sum = self.sum.load::<V, LANES, G>(vector);
+            if !self.combine.is_plain() {
+                partial.weight = self.weight.load::<V, LANES, G>(vector);
+            }
             partial.add::<G>(self.combine, self.frequency, self.amplitude, noise);
+            self.sum.store::<V, LANES, G>(vector, partial.sum);
+            if !self.combine.is_plain() {
+                self.weight.store::<V, LANES, G>(vector, partial.weight);
+            }
         }
     }
 }

@@ -8,6 +8,8 @@ use std::arch::x86_64::*;
 
 use super::{F32x16, I32x16};
 use crate::basis::Tables;
+use crate::basis::corners::{Corners, Curve};
+use crate::basis::improved::blend_dots;
 use crate::number::{Integer, Real};
 use crate::simd::pipeline::{self, ALONE, Halves, Octave, PLAIN, Point, Sums};
 use crate::simd::{Terms, Vector};
@@ -20,11 +22,11 @@ const STEP: usize = 64;
 pub(in crate::simd) fn sum<const N: usize>(
     tables: &Tables,
     terms: &Terms,
-    points: [&[f32]; 3],
+    [x, y, z]: [&[f32]; 3],
     outputs: [&mut [f32]; N],
 ) -> usize {
     let whole = outputs[0].len() / STEP * STEP;
-    pipeline::sum(&InRegisters(tables), terms, points.map(|axis| &axis[..whole]), outputs)
+    pipeline::sum(&InRegisters(tables), terms, [&x[..whole], &y[..whole], &z[..whole]], outputs)
 }
 
 /// The kernel whose codes stay in registers. It exists only where the machine has the instructions.
@@ -61,7 +63,10 @@ impl Halves<STEP> for InRegisters<'_> {
         sums: Sums<STEP, N>,
         codes: &[__m512i; 4],
     ) {
-        add_step::<USE, N>(codes, octave, point, sums);
+        if N == 4 {
+            return add_step::<USE, N>(codes, octave, point, sums);
+        }
+        finish::<USE, N>(codes, octave, point, sums);
     }
 }
 
@@ -99,6 +104,49 @@ fn add_step<const USE: u8, const N: usize>(
     add_vector::<3, USE, N>(codes, octave, point, &mut sums);
 }
 
+/// [`add_step`] with nothing to do beside it while the hashes are on their way, but what needs no hash: so that is done for
+/// all points first.
+#[inline(always)]
+fn finish<const USE: u8, const N: usize>(
+    codes: &[__m512i; 4],
+    octave: &Octave,
+    point: Point<STEP>,
+    mut sums: Sums<STEP, N>,
+) {
+    let ready = [
+        place::<USE>(octave, point, 0),
+        place::<USE>(octave, point, 1),
+        place::<USE>(octave, point, 2),
+        place::<USE>(octave, point, 3),
+    ];
+    // (In memory: they fill more registers than there are, and the compiler would rather work them out late.)
+    let ready = std::hint::black_box(&ready);
+    finish_vector::<0, USE, N>(codes, octave, &ready[0], &mut sums);
+    finish_vector::<1, USE, N>(codes, octave, &ready[1], &mut sums);
+    finish_vector::<2, USE, N>(codes, octave, &ready[2], &mut sums);
+    finish_vector::<3, USE, N>(codes, octave, &ready[3], &mut sums);
+}
+
+/// The offsets of sixteen points in their cells, and their curves.
+#[inline(always)]
+fn place<const USE: u8>(octave: &Octave, point: Point<STEP>, group: usize) -> [[F32x16; 3]; 2] {
+    let offset = offset::<USE>(octave, point, group);
+    [offset, Curve::quintic(&offset).at]
+}
+
+/// Adds one octave at sixteen of 64 points, whose offsets and curves are known.
+#[inline(always)]
+fn finish_vector<const GROUP: usize, const USE: u8, const N: usize>(
+    codes: &[__m512i; 4],
+    octave: &Octave,
+    &[offset, curve]: &[[F32x16; 3]; 2],
+    sums: &mut Sums<STEP, N>,
+) {
+    let curve = Curve { at: curve, slope: curve };
+    let sample = blend_dots::<F32x16, 3, false>(corners::<GROUP>(codes), offset, &curve);
+    pipeline::add::<F32x16, STEP, 16, N, USE>(octave, sample, sums, GROUP);
+}
+
 /// Adds one octave at sixteen of 64 points.
 #[inline(always)]
 fn add_vector<const GROUP: usize, const USE: u8, const N: usize>(
@@ -107,6 +155,13 @@ fn add_vector<const GROUP: usize, const USE: u8, const N: usize>(
     point: Point<STEP>,
     sums: &mut Sums<STEP, N>,
 ) {
+    let offset = offset::<USE>(octave, point, GROUP);
+    pipeline::add_vector::<F32x16, STEP, 16, N, USE>(octave, corners::<GROUP>(codes), offset, sums, GROUP);
+}
+
+/// The codes of the corners at sixteen of 64 points. (Of each the low four bits count.)
+#[inline(always)]
+fn corners<const GROUP: usize>(codes: &[__m512i; 4]) -> Corners<I32x16> {
     let mut corners = [I32x16(codes[0]); 16];
     for column in 0..4 {
         // The bits of the code at the lower end, and of that at the upper end.
@@ -114,12 +169,18 @@ fn add_vector<const GROUP: usize, const USE: u8, const N: usize>(
         corners[column] = I32x16(codes[column]).shift_right(bit);
         corners[column + 4] = I32x16(codes[column]).shift_right(bit + 4);
     }
+    corners
+}
+
+/// The offsets in their cells of sixteen of 64 points.
+#[inline(always)]
+fn offset<const USE: u8>(octave: &Octave, point: Point<STEP>, group: usize) -> [F32x16; 3] {
     let mut offset = [F32x16::constant(0.0); 3];
     for axis in 0..3 {
-        let position = load::<USE>(point[axis], GROUP, octave.frequency);
+        let position = load::<USE>(point[axis], group, octave.frequency);
         offset[axis] = position - position.floor();
     }
-    pipeline::add_vector::<F32x16, STEP, 16, N, USE>(octave, corners, offset, sums, GROUP);
+    offset
 }
 
 /// The edge codes of the four columns over each cell. The byte `group` of the lane `i` belongs to the point
