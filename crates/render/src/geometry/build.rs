@@ -40,6 +40,10 @@ impl Item {
         (self.0.max.w as u32) << 16 | self.0.min.w as u32
     }
 
+    pub fn bounds(&self) -> Aabb {
+        self.0.aabb()
+    }
+
     pub fn is_finite(&self) -> bool {
         self.0.min.is_finite() && self.0.max.is_finite()
     }

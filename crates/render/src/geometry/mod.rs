@@ -7,6 +7,7 @@ pub(crate) mod analytic;
 mod build;
 mod bvh;
 mod collapse;
+mod few;
 mod kernel;
 mod packet;
 mod plan;
@@ -23,6 +24,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use crate::affine::{self, Affine};
 use crate::motion::Motion;
+use few::Few;
 use packet::Packet;
 pub(crate) use plan::{Placement, Plan};
 pub(crate) use rays::{Hits, Ids, RayView, Rays, Rows};
@@ -290,6 +292,9 @@ impl simd::Kernel for Closest<'_> {
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Closest { geometry, rays, hits, scratch } = self;
+        if let Some(few) = Few::of(&geometry.tree, &geometry.planes) {
+            return few.closest::<S>(rays, hits);
+        }
         let Scratch { packet: stack, flights, inner, scattered } = scratch;
         scattered.clear();
         for start in (0..rays.len()).step_by(S::Wide::COUNT) {
@@ -320,6 +325,9 @@ impl simd::Kernel for Occluded<'_> {
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Occluded { geometry, rays, blocked, scratch } = self;
+        if let Some(few) = Few::of(&geometry.tree, &geometry.planes) {
+            return few.occluded::<S>(rays, blocked);
+        }
         let Scratch { packet: stack, flights, inner, scattered } = scratch;
         scattered.clear();
         for start in (0..rays.len()).step_by(S::Wide::COUNT) {

@@ -295,7 +295,7 @@ impl<'a, L: Lanes> Packet<'a, L> {
                 self.triangles_alone(&tree.triangles[child.index()], way, active, near);
             }
             Kind::Triangles => self.triangles(&tree.triangles[child.index()], way, active, near),
-            Kind::Spheres => self.spheres(&tree.spheres[child.index()], active, near),
+            Kind::Spheres => self.spheres(&tree.spheres[child.index()], u32::MAX, active, near),
             Kind::Instance | Kind::Analytic => self.alone::<S>(tree, child, active, near, flights),
         }
     }
@@ -351,12 +351,16 @@ impl<'a, L: Lanes> Packet<'a, L> {
         }
     }
 
+    /// Meets the spheres of a block that are in the mask `slots`.
     #[inline(always)]
-    fn spheres(&mut self, block: &SphereBlock, active: u32, near: L) {
+    pub fn spheres(&mut self, block: &SphereBlock, slots: u32, active: u32, near: L) {
         let plain = Plain { origin: self.origin, direction: self.direction, t_min: self.t_min };
         for (slot, &id) in block.ids.iter().enumerate() {
             if id == Id::NONE {
                 break;
+            }
+            if slots >> slot & 1 == 0 {
+                continue;
             }
             let [x, y, z] = &block.centers;
             let (center, radius) = (Vec3s::of([x[slot], y[slot], z[slot]]), L::splat(block.radii[slot]));

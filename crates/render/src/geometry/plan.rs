@@ -192,14 +192,20 @@ impl Plan {
             Shape::Mesh(mesh) => Some((&self.meshes[mesh as usize], object as u32)),
             _ => None,
         })));
-        roots.extend(builder.spheres_of((0..).zip(&self.objects).flat_map(|(object, o)| {
-            let (single, set) = match o.shape {
-                Shape::Sphere { center, radius } => (Some(center.extend(radius)), &[][..]),
-                Shape::Spheres(set) => (None, &self.sphere_sets[set as usize].spheres[..]),
-                _ => (None, &[][..]),
-            };
-            named(single.into_iter().chain(set.iter().copied()), object)
-        })));
+        // A few spheres and nothing else are quicker to meet without a tree.
+        let alone = roots.is_empty() && self.instances.is_empty() && self.analytics.is_empty();
+        let least = if alone { 8 } else { 1 };
+        roots.extend(builder.spheres_of(
+            least,
+            (0..).zip(&self.objects).flat_map(|(object, o)| {
+                let (single, set) = match o.shape {
+                    Shape::Sphere { center, radius } => (Some(center.extend(radius)), &[][..]),
+                    Shape::Spheres(set) => (None, &self.sphere_sets[set as usize].spheres[..]),
+                    _ => (None, &[][..]),
+                };
+                named(single.into_iter().chain(set.iter().copied()), object)
+            }),
+        ));
         roots.extend(builder.instances_of(&self, &shared));
         roots.extend(builder.analytics_of(&self));
         let root = builder.join(&roots);
@@ -225,9 +231,9 @@ impl Plan {
         for &(_, shape) in &self.instances {
             trees.entry(shape).or_insert_with(|| match shape {
                 Shared::Mesh(mesh) => builder.triangles_of(std::iter::once((&self.meshes[mesh as usize], none))),
-                Shared::UnitSphere => builder.spheres_of(named([Vec3::ZERO.extend(1.0)], none)),
+                Shared::UnitSphere => builder.spheres_of(1, named([Vec3::ZERO.extend(1.0)], none)),
                 Shared::Spheres(set) => {
-                    builder.spheres_of(named(self.sphere_sets[set as usize].spheres.iter().copied(), none))
+                    builder.spheres_of(1, named(self.sphere_sets[set as usize].spheres.iter().copied(), none))
                 }
             });
         }
@@ -310,10 +316,10 @@ impl Builder {
         })
     }
 
-    /// A tree over spheres: centre with radius, and name.
-    fn spheres_of(&mut self, spheres: impl Iterator<Item = (Vec4, Id)>) -> Option<(Child, Aabb)> {
+    /// A tree over spheres: centre with radius, and name. No more than `least` of them are a single leaf.
+    fn spheres_of(&mut self, least: usize, spheres: impl Iterator<Item = (Vec4, Id)>) -> Option<(Child, Aabb)> {
         let spheres: Vec<_> = spheres.filter(|(sphere, _)| sphere.is_finite()).collect();
-        let items = (0..)
+        let items: Vec<_> = (0..)
             .zip(&spheres)
             .map(|(index, &(sphere, _))| {
                 // Rounding may put a point of the sphere just outside the exact box.
@@ -322,7 +328,7 @@ impl Builder {
                 Item::new(Aabb { min: center - reach, max: center + reach }, index)
             })
             .collect();
-        build(items, (Kind::Spheres, 8), &mut self.nodes, &mut self.spheres, &|items| {
+        let leaf = |items: &[Item]| {
             let mut block = SphereBlock::EMPTY;
             for (lane, item) in items.iter().enumerate() {
                 let (sphere, id) = spheres[item.index() as usize];
@@ -333,7 +339,13 @@ impl Builder {
                 block.ids[lane] = id;
             }
             block
-        })
+        };
+        if (1..=least).contains(&items.len()) {
+            let corners = items.iter().map(Item::bounds).flat_map(|bounds| [bounds.min, bounds.max]);
+            self.spheres.push(leaf(&items));
+            return Some((Child::leaf(Kind::Spheres, self.spheres.len() - 1), Aabb::around(corners)));
+        }
+        build(items, (Kind::Spheres, 8), &mut self.nodes, &mut self.spheres, &leaf)
     }
 
     /// A tree over instances.

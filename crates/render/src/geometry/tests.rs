@@ -137,6 +137,7 @@ fn brute_sphere(ray: &Ray, center: Vec3, radius: f32, (object, index): (u32, u32
     };
     if let Some(crossing) = sphere(&plain, Vec3s::splat(center), radius, zero, t_max)
         && crossing.mask != 0
+        && ray.skip != (Id { object, index })
     {
         best.improve(Hit { t: crossing.t.store()[0], u: 0.0, v: 0.0, id: Id { object, index }, time: None });
     }
@@ -199,7 +200,8 @@ fn check(name: &str, geometry: &Geometry, rays: &[Ray]) {
         let mut alone = Hit { t: ray.t_max, ..Hit::NONE };
         geometry.trace::<Portable>(ray, false, &mut alone, &mut scratch);
         assert_eq!(bits(&hits[i]), bits(&alone), "{name}: ray {i} among others and alone");
-        assert_eq!(blocked[i], hits[i].id != Id::NONE, "{name}: shadow and hit of ray {i}");
+        let looks = ray.t_max >= 0.0;
+        assert_eq!(blocked[i], hits[i].id != Id::NONE || !looks, "{name}: shadow and hit of ray {i}");
         let brute = brute_force(geometry, ray);
         assert_eq!(hits[i].id == Id::NONE, brute.id == Id::NONE, "{name}: ray {i}: {:?}, {brute:?}", hits[i]);
         let close = hits[i].t == brute.t || (hits[i].t - brute.t).abs() <= 1e-5 * brute.t;
@@ -569,5 +571,52 @@ fn rays_that_leave_a_shape_with_a_formula_get_away_from_it() {
         }
         // The folds of a Julia set come as near to each other as one likes.
         assert!(met > 200 && stuck * 100 <= met, "{shape:?} of size {size}: {stuck} of {met}");
+    }
+}
+
+/// Rays of whole groups: from a point, and towards one, as a camera and a light have them; the latter leave spheres.
+fn bundles(random: &mut Random, geometry: &Geometry, scale: f32) -> Vec<Ray> {
+    let mut rays = Vec::new();
+    for bundle in 0..12 {
+        let (point, target) = (random.point() * 4.0 * scale, random.point() * scale);
+        let width = scale * [0.02, 0.2, 1.0][bundle % 3];
+        // The second half of a group has another width, and the last group is not full.
+        for i in 0..if bundle == 11 { 100 } else { 256 } {
+            let end = target + random.point() * if i < 128 { width } else { width * 0.3 };
+            let (direction, distance) = ((end - point).normalize(), (end - point).length());
+            let mut ray =
+                Ray { origin: point, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE, time: None };
+            if bundle % 2 == 1 {
+                let leaves = bundle as u32 % geometry.objects.len() as u32;
+                (ray.origin, ray.direction, ray.t_max) = (end, -direction, distance);
+                ray.skip = if bundle == 5 && i > 200 { Id::NONE } else { Id { object: leaves, index: 0 } };
+                ray.t_max = if i % 7 == 0 { -1.0 } else { ray.t_max };
+            }
+            rays.push(ray);
+        }
+    }
+    rays
+}
+
+#[test]
+fn a_few_spheres_are_met_as_by_a_tree() {
+    for count in 1..=10 {
+        for (k, scale) in [1.0, 1e-2, 1e6].into_iter().enumerate() {
+            let mut random = Random(1000 * count + k as u32);
+            let geometry = plan(|plan| {
+                for i in 0..count {
+                    let size = f64::from(scale * (random.next() + 0.1)) * if i % 3 == 0 { 0.8 } else { 0.1 };
+                    let at = DMat4::from_translation((random.point() * scale).as_dvec3());
+                    plan.sphere(&place(at * DMat4::from_scale(DVec3::splat(size))));
+                }
+                if count % 4 == 0 {
+                    plan.plane(Vec3::NEG_Y * scale, Vec3::Y, None, &here());
+                }
+            });
+            assert_eq!(geometry.tree.root.is_node(), count > 8, "{count} spheres");
+            let mut few = bundles(&mut random, &geometry, scale);
+            few.extend(rays(&mut random, 600, scale, Vec3::ZERO));
+            check(&format!("{count} spheres of size {scale}"), &geometry, &few);
+        }
     }
 }
