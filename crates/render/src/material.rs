@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 use jaspe_texture::{Space, Texture};
 
 use crate::geometry::Rows;
+use crate::geometry::simd::{self, Simd};
 use crate::modifier::Modifier;
 use crate::options::Look;
 use crate::picture::{Picture, PicturePixels};
@@ -133,6 +134,42 @@ impl Procedural {
         }
         if self.decode {
             colors.iter_mut().for_each(|color| *color = color.map(decode_display));
+        }
+    }
+}
+
+impl Procedural {
+    /// Display values at all points, in rows; `coefficients` is room for those that mix them.
+    pub fn paint(&self, points: &Rows, coefficients: &mut Vec<f32>, colors: &mut Rows) {
+        let count = points.x.len();
+        coefficients.resize(count, 0.0);
+        colors.resize(count);
+        let [x, y, z] = points.slices(count);
+        match self.texture.space() {
+            Space::Uv => self.texture.evaluate([x, y], coefficients),
+            Space::World | Space::Local => self.texture.evaluate([x, y, z], coefficients),
+        }
+        simd::run(Mix { texture: &self.texture, coefficients, colors });
+    }
+}
+
+/// Mixes a texture's colours.
+struct Mix<'a> {
+    texture: &'a Texture,
+    coefficients: &'a [f32],
+    colors: &'a mut Rows,
+}
+
+impl simd::Kernel for Mix<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Mix { texture, coefficients, colors } = self;
+        let count = coefficients.len();
+        let [red, green, blue] = colors.slices_mut(count);
+        for i in 0..count {
+            [red[i], green[i], blue[i]] = texture.color(coefficients[i]);
         }
     }
 }

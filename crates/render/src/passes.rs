@@ -310,18 +310,16 @@ impl<'a, R: Rules> Job<'a, R> {
         self.scene.aim(&Shots { pixels, indices, of: pass.end }, self.options.seed, samples);
         let looks = !tile.spreads.is_empty();
         workspace.trace(&self.scene.world, self.rules, samples, looks);
-        let Results { colors, covered, seen } = &workspace.results;
+        let Results { pixels, seen } = &workspace.results;
         for (i, &slot) in slots.iter().enumerate() {
-            let sum = &mut tile.sums[slot as usize];
-            for k in i * each..(i + 1) * each {
-                sum.add(colors[k], covered[k]);
-            }
+            let samples = i * each..(i + 1) * each;
+            tile.sums[slot as usize].add(&pixels[samples.clone()]);
             if looks {
                 let spread = &mut tile.spreads[slot as usize];
-                (i * each..(i + 1) * each).for_each(|k| spread.add(colors[k], seen[k]));
+                samples.for_each(|k| spread.add(&pixels[k], seen[k]));
             }
         }
-        let count = colors.len() as u64;
+        let count = pixels.len() as u64;
         let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
         self.observer.progress(done, self.total.load(Ordering::Relaxed));
     }

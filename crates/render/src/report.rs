@@ -2,18 +2,21 @@
 //! mirrors, a camera formula of its own. Everything that is particular to this dialect is in this file.
 
 mod camera;
+mod gathered;
 mod shade;
 
 use glam::{Vec2, Vec3};
 use jaspe_texture::Space;
 
 use crate::clock::Stage;
-use crate::geometry::{Geometry, Hit, Hits, Id, PlaneShape, Ray, Rays, Shape, simd};
+use crate::film::Pixel;
+use crate::geometry::{Geometry, Hit, Hits, Id, PlaneShape, Ray, Rays, Shape, padded, simd};
 use crate::material::Albedo;
 use crate::math;
 use crate::wave::{Batch, Path, Queues, Rules};
 pub(crate) use camera::{Grid, ReportCamera};
-use shade::{Room, spawn_all};
+use gathered::Gathered;
+use shade::Room;
 
 /// Light that is there without any light source.
 const AMBIENT: f32 = 0.01;
@@ -43,32 +46,11 @@ pub(crate) struct Report {
     pub plane_axes: Vec<[Vec3; 2]>,
 }
 
-/// Where light is gathered: the original adds up what a ray brings in a way of its own, so every ray has such a node.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Gathered {
-    /// Light from lights.
-    direct: Vec3,
-    /// Light from child nodes, by their shares.
-    indirect: Vec3,
-    /// The node that gets this one's light, and how much of it; nothing of that for camera samples.
-    parent: u32,
-    share: f32,
-    /// What the sum is multiplied by; zero where the ray met nothing.
-    gain: f32,
-}
-
-impl Gathered {
-    /// The light of a node whose children are complete.
-    fn finish(&self) -> Vec3 {
-        let direct = self.direct.clamp(Vec3::ZERO, Vec3::ONE);
-        ((Vec3::splat(AMBIENT) + direct + self.indirect) * self.gain).clamp(Vec3::ZERO, Vec3::ONE)
-    }
-}
-
 impl Rules for Report {
-    type Node = Gathered;
+    type Nodes = Gathered;
     type Room = Room;
     const T_MIN: f32 = T_MIN;
+    const OPEN: bool = false;
 
     fn shade(&self, batch: &Batch<'_>, room: &mut Room, queues: &mut Queues<Gathered>) {
         room.locate(self, batch);
@@ -76,10 +58,10 @@ impl Rules for Report {
         self.albedos(batch, room);
         queues.clock.lap(Stage::Texture);
         if let Albedo::Procedural(_) = batch.material.albedo {
-            queues.stats.texture_points += batch.members.len() as u64;
+            queues.stats.texture_points += batch.len() as u64;
         }
         self.direct(batch, room, queues);
-        spawn_all(batch, room, queues);
+        room.spawn(batch, queues);
     }
 
     fn miss(&self, _: &Path, _: Vec3, _: &mut Gathered) -> bool {
@@ -90,14 +72,8 @@ impl Rules for Report {
         Vec3::ZERO
     }
 
-    fn resolve(&self, nodes: &mut [Gathered], samples: usize, colors: &mut Vec<Vec3>) {
-        // Last to first: children before their parents.
-        for i in (samples..nodes.len()).rev() {
-            let node = nodes[i];
-            nodes[node.parent as usize].indirect += node.share * node.finish();
-        }
-        colors.clear();
-        colors.extend(nodes[..samples].iter().map(Gathered::finish));
+    fn resolve(&self, nodes: &mut Gathered, pixels: &mut [Pixel]) {
+        nodes.resolve(pixels);
     }
 }
 
@@ -110,26 +86,24 @@ fn sphere_uv(x: f32, height: f32) -> Vec2 {
 impl Report {
     /// Colours of a batch, one per member.
     fn albedos(&self, batch: &Batch<'_>, room: &mut Room) {
-        let Room { position, outward, heights, round, texture_points, colors, .. } = room;
+        let Room { position, outward, heights, round, texture_points, coefficients, colors, .. } = room;
         let uv = |i: usize| self.uv(batch.geometry, &batch.hit(i), position.get(i));
-        let count = batch.members.len();
-        colors.resize(count, [0.0; 3]);
+        let count = batch.len();
+        colors.resize(padded(count));
         match &batch.material.albedo {
-            Albedo::Color(color) | Albedo::Blend { color, .. } => colors.fill(color.to_array()),
-            Albedo::Picture(picture) => {
-                colors.iter_mut().enumerate().for_each(|(i, color)| *color = picture.nearest(uv(i)).to_array());
-            }
+            Albedo::Color(color) | Albedo::Blend { color, .. } => colors.fill(*color),
+            Albedo::Picture(picture) => (0..count).for_each(|i| colors.set(i, picture.nearest(uv(i)))),
             Albedo::Procedural(procedural) => match procedural.texture.space() {
-                Space::World => procedural.evaluate(position, None, colors),
-                Space::Local => procedural.evaluate(outward, None, colors),
+                Space::World => procedural.paint(position, coefficients, colors),
+                Space::Local => procedural.paint(outward, coefficients, colors),
                 Space::Uv => {
-                    texture_points.resize(count);
+                    texture_points.resize(padded(count));
                     if *round {
                         simd::run(shade::SphereUvs { outward, heights, uvs: texture_points });
                     } else {
                         (0..count).for_each(|i| texture_points.set(i, uv(i).extend(0.0)));
                     }
-                    procedural.evaluate(texture_points, None, colors);
+                    procedural.paint(texture_points, coefficients, colors);
                 }
             },
         }

@@ -18,6 +18,7 @@ use jaspe_texture::Space;
 
 use crate::clock::{Clock, Spent, Stage};
 use crate::environment::Environment;
+use crate::film::Pixel;
 use crate::geometry::{Geometry, Hit, Hits, Rays, Rows, Scratch, Surface};
 use crate::light::{Fan, Light};
 use crate::material::{Albedo, Coat, Gloss, Response};
@@ -87,7 +88,7 @@ pub(crate) struct Room {
 
 impl Rules for Sunflow {
     /// Linear light.
-    type Node = Vec3;
+    type Nodes = Vec<Vec3>;
     type Room = Room;
     const T_MIN: f32 = 0.0;
 
@@ -96,13 +97,13 @@ impl Rules for Sunflow {
         (RAYS / fan.max(1) as usize).clamp(16, 1024)
     }
 
-    fn shade(&self, batch: &Batch<'_>, room: &mut Room, queues: &mut Queues<Vec3>) {
+    fn shade(&self, batch: &Batch<'_>, room: &mut Room, queues: &mut Queues<Vec<Vec3>>) {
         room.prepare(batch, &mut queues.clock);
         if let Albedo::Procedural(_) = batch.material.albedo {
-            queues.stats.texture_points += batch.members.len() as u64;
+            queues.stats.texture_points += batch.len() as u64;
         }
         let mut lit = Vec::new();
-        for i in 0..batch.members.len() {
+        for i in 0..batch.len() {
             let point = room.point(batch, i);
             let (bsdf, color) = self.respond(batch, &point, room, queues);
             if !bsdf.is_black() {
@@ -119,16 +120,16 @@ impl Rules for Sunflow {
         room.shadows.trace(batch.geometry, queues, &mut room.scratch);
     }
 
-    fn miss(&self, path: &Path, direction: Vec3, node: &mut Vec3) -> bool {
+    fn miss(&self, path: &Path, direction: Vec3, nodes: &mut Vec<Vec3>) -> bool {
         if let Some(surroundings) = &self.surroundings
             && path.sees_light()
         {
-            *node += path.weight * surroundings.radiance(direction);
+            nodes[path.node as usize] += path.weight * surroundings.radiance(direction);
             return true;
         }
         // Sunflow: backgrounds are seen by camera rays only (R3).
         if let Some(background) = self.background.filter(|_| path.depth.total() == 0) {
-            *node += path.weight * background;
+            nodes[path.node as usize] += path.weight * background;
             return true;
         }
         false
@@ -140,11 +141,10 @@ impl Rules for Sunflow {
         if ray.direction.dot(geometric) >= 0.0 { -normal } else { normal }
     }
 
-    fn resolve(&self, nodes: &mut [Vec3], samples: usize, colors: &mut Vec<Vec3>) {
-        colors.clear();
+    fn resolve(&self, nodes: &mut Vec<Vec3>, pixels: &mut [Pixel]) {
         // Scenes with absurd numbers overflow; one sample must not spoil its pixel, nor a sum of them overflow.
         let sane = |light: &Vec3| if light.is_finite() { light.min(Vec3::splat(1e30)) } else { Vec3::ZERO };
-        colors.extend(nodes[..samples].iter().map(sane));
+        pixels.iter_mut().zip(nodes).for_each(|(pixel, light)| *pixel = sane(light).extend(1.0).to_array());
     }
 }
 
@@ -192,7 +192,7 @@ impl Path {
 fn paint(albedo: &Albedo, batch: &Batch<'_>, points: &Points, seen: &mut TexturePoints, colors: &mut Vec<[f32; 3]>) {
     let (geometry, point) = (batch.geometry, &points.surfaces.point);
     let uv = |i: usize| geometry.uv(&batch.hit(i), point.get(i));
-    let count = batch.members.len();
+    let count = batch.len();
     colors.resize(count, [0.0; 3]);
     match albedo {
         Albedo::Color(color) => colors.fill(color.to_array()),
@@ -233,7 +233,7 @@ impl Sunflow {
         batch: &Batch<'_>,
         point: &Point<'_>,
         room: &mut Room,
-        queues: &mut Queues<Vec3>,
+        queues: &mut Queues<Vec<Vec3>>,
     ) -> (Bsdf, Vec3) {
         let specular = point.path.sees_light();
         match &batch.material.response {
@@ -257,7 +257,7 @@ impl Sunflow {
         (Bsdf::matte(Vec3::ZERO), Vec3::ZERO)
     }
 
-    fn emit(&self, point: &Point<'_>, light: Vec3, queues: &mut Queues<Vec3>) {
+    fn emit(&self, point: &Point<'_>, light: Vec3, queues: &mut Queues<Vec<Vec3>>) {
         queues.nodes[point.path.node as usize] += point.path.weight * light;
     }
 
@@ -269,7 +269,7 @@ impl Sunflow {
         point: &Point<'_>,
         specular: bool,
         room: &mut Room,
-        queues: &mut Queues<Vec3>,
+        queues: &mut Queues<Vec<Vec3>>,
     ) -> (Bsdf, Vec3) {
         let mut color = point.color;
         let mut bsdf = Bsdf::matte(color);
@@ -303,7 +303,7 @@ impl Sunflow {
     }
 
     /// Light that comes to a matte surface of a colour by way of mirrors and glass.
-    fn add_caustics(&self, point: &Point<'_>, color: Vec3, nearest: &mut Nearest, queues: &mut Queues<Vec3>) {
+    fn add_caustics(&self, point: &Point<'_>, color: Vec3, nearest: &mut Nearest, queues: &mut Queues<Vec<Vec3>>) {
         if let Some(Caustics::Map(map)) = &self.caustics {
             let behind = point.path.depth.diffuse > 0;
             let irradiance = map.irradiance(point.front, point.surface.normal, behind, nearest);
@@ -327,7 +327,7 @@ impl Sunflow {
     }
 
     /// Queues a secondary ray, unless it would bring nothing.
-    fn queue(&self, point: &Point<'_>, [origin, direction]: [Vec3; 2], path: Path, queues: &mut Queues<Vec3>) {
+    fn queue(&self, point: &Point<'_>, [origin, direction]: [Vec3; 2], path: Path, queues: &mut Queues<Vec<Vec3>>) {
         if path.weight.max_element() > 0.0 && path.weight.is_finite() {
             let path = Path { cone: point.cone(path.kind), ..path };
             queues.next.push(point.leave(origin, direction), path);

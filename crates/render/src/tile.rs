@@ -18,12 +18,14 @@ pub(crate) struct Sum {
 }
 
 impl Sum {
-    pub fn add(&mut self, color: Vec3, covered: bool) {
-        self.color[0] += color.x;
-        self.color[1] += color.y;
-        self.color[2] += color.z;
-        self.color[3] += if covered { 1.0 } else { 0.0 };
-        self.count += 1.0;
+    /// Adds samples, one after the other.
+    pub fn add(&mut self, samples: &[Pixel]) {
+        let mut color = self.color;
+        for sample in samples {
+            (0..4).for_each(|i| color[i] += sample[i]);
+            self.count += 1.0;
+        }
+        self.color = color;
     }
 
     pub fn mean(&self) -> Pixel {
@@ -44,11 +46,11 @@ pub(crate) struct Spread {
 impl Spread {
     pub const EMPTY: Spread = Spread { brightness: [0.0; 2], count: 0, seen: Seen::NOTHING };
 
-    pub fn add(&mut self, color: Vec3, seen: Seen) {
+    pub fn add(&mut self, &[red, green, blue, _]: &Pixel, seen: Seen) {
         if self.count == 0 {
             self.seen = seen;
         }
-        let brightness = color.max_element();
+        let brightness = red.max(green).max(blue);
         self.brightness[0] += brightness;
         self.brightness[1] += brightness * brightness;
         self.count += 1;

@@ -10,7 +10,8 @@ use std::ops::Range;
 use glam::Vec3;
 
 use crate::clock::{Clock, Stage};
-use crate::geometry::{Geometry, Hit, Hits, Id, Ray, Rays, Scratch};
+use crate::film::Pixel;
+use crate::geometry::{Geometry, Hit, Hits, Id, Met, Ray, Rays, Run, Scratch};
 use crate::material::Material;
 use crate::options::Stats;
 use crate::sampler::SampleKey;
@@ -167,9 +168,8 @@ impl Seen {
 /// What comes of the camera samples.
 #[derive(Debug, Default)]
 pub(crate) struct Results {
-    pub colors: Vec<Vec3>,
-    /// Whether anything was seen, background included.
-    pub covered: Vec<bool>,
+    /// Colours, and whether anything was seen, background included: 1 or 0.
+    pub pixels: Vec<Pixel>,
     pub seen: Vec<Seen>,
 }
 
@@ -177,7 +177,7 @@ pub(crate) struct Results {
 #[derive(Debug)]
 pub(crate) struct Queues<N> {
     pub next: Paths,
-    pub nodes: Vec<N>,
+    pub nodes: N,
     pub stats: Stats,
     /// Whoever goes on to another stage ends the lap of the last one.
     pub clock: Clock,
@@ -191,16 +191,19 @@ pub(crate) struct World {
     pub materials: Vec<Material>,
 }
 
-/// The hits of one wave that share a material.
+/// The hits of one wave that share a material, moved together.
 #[derive(Clone, Copy)]
 pub(crate) struct Batch<'a> {
     pub geometry: &'a Geometry,
     pub material: &'a Material,
-    /// Positions in `rays`, `paths` and `hits`.
+    /// Rays and hits of the members, one after the other.
+    pub met: &'a Met,
+    /// Where in the wave they come from, and on which objects they are.
+    pub runs: &'a [Run],
+    /// Their positions in the wave, one by one.
     pub members: &'a [u32],
-    pub rays: &'a Rays,
+    /// Those of the whole wave.
     pub paths: &'a [Path],
-    pub hits: &'a Hits,
     /// By camera sample.
     pub keys: &'a [SampleKey],
     /// How many samples each pixel has.
@@ -208,16 +211,20 @@ pub(crate) struct Batch<'a> {
 }
 
 impl Batch<'_> {
+    pub fn len(&self) -> usize {
+        self.members.len()
+    }
+
     /// The ray of a member.
     #[inline]
     pub fn ray(&self, member: usize) -> Ray {
-        self.rays.get(self.members[member] as usize)
+        self.met.ray(member)
     }
 
     /// The hit of a member.
     #[inline]
     pub fn hit(&self, member: usize) -> Hit {
-        self.hits.get(self.members[member] as usize)
+        self.met.hits.get(member)
     }
 
     /// The path of a member.
@@ -227,14 +234,35 @@ impl Batch<'_> {
     }
 }
 
+/// Where the light of the paths is gathered.
+pub(crate) trait Nodes: Default {
+    /// Makes one node for each of so many camera samples, which have met nothing yet.
+    fn begin(&mut self, samples: usize);
+}
+
+/// For those who gather nothing.
+impl Nodes for () {
+    fn begin(&mut self, _: usize) {}
+}
+
+/// Plain sums.
+impl Nodes for Vec<Vec3> {
+    fn begin(&mut self, samples: usize) {
+        self.clear();
+        self.resize(samples, Vec3::ZERO);
+    }
+}
+
 /// What a dialect does with hits, misses and gathered light.
 pub(crate) trait Rules: Sync {
-    /// Where light is gathered; the default is that of a camera sample that has met nothing yet.
-    type Node: Copy + Default;
+    /// Where light is gathered.
+    type Nodes: Nodes;
     /// One thread's room for shading, used again and again.
     type Room: Default;
     /// The smallest distance of a hit.
     const T_MIN: f32;
+    /// Whether what meets nothing brings light, or leaves its pixel uncovered: if not, nobody asks.
+    const OPEN: bool = true;
 
     /// How many camera samples go together: enough to fill texture batches, few enough that their rays fit the caches.
     fn wave(&self) -> usize {
@@ -242,31 +270,35 @@ pub(crate) trait Rules: Sync {
     }
 
     /// Shades a batch: adds light to nodes, queues secondary rays.
-    fn shade(&self, batch: &Batch<'_>, room: &mut Self::Room, queues: &mut Queues<Self::Node>);
+    fn shade(&self, batch: &Batch<'_>, room: &mut Self::Room, queues: &mut Queues<Self::Nodes>);
 
     /// Adds what a ray that met nothing brings, and says whether the camera takes that for a surface.
-    fn miss(&self, path: &Path, direction: Vec3, node: &mut Self::Node) -> bool;
+    fn miss(&self, path: &Path, direction: Vec3, nodes: &mut Self::Nodes) -> bool;
 
     /// What the camera sees at a hit: the normal.
     fn seen(&self, geometry: &Geometry, rays: &Rays, hits: &Hits, i: usize) -> Vec3;
 
-    /// The light of the first `samples` nodes.
-    fn resolve(&self, nodes: &mut [Self::Node], samples: usize, colors: &mut Vec<Vec3>);
+    /// Writes the light of the camera samples, of which there are as many as pixels; the last of the four numbers is not
+    /// its business.
+    fn resolve(&self, nodes: &mut Self::Nodes, pixels: &mut [Pixel]);
 }
 
 /// One thread's room for waves, used again and again.
 pub(crate) struct Workspace<R: Rules> {
     current: Paths,
     hits: Hits,
-    /// Positions of hits, sorted by material, and where each material starts.
-    sorted: Vec<u32>,
+    /// Runs of hits, as they come, and sorted by material: misses last.
+    found: Vec<Run>,
+    runs: Vec<Run>,
+    /// Where the runs of each material start.
     starts: Vec<u32>,
-    materials: Vec<u32>,
-    /// Positions of rays that met nothing.
-    misses: Vec<u32>,
+    met: Met,
+    members: Vec<u32>,
+    /// Camera samples that have seen nothing.
+    uncovered: Vec<u32>,
     pub room: R::Room,
     scratch: Scratch,
-    pub queues: Queues<R::Node>,
+    pub queues: Queues<R::Nodes>,
     pub results: Results,
 }
 
@@ -275,15 +307,17 @@ impl<R: Rules> Default for Workspace<R> {
         Workspace {
             current: Paths::default(),
             hits: Hits::default(),
-            sorted: Vec::new(),
+            found: Vec::new(),
+            runs: Vec::new(),
             starts: Vec::new(),
-            materials: Vec::new(),
-            misses: Vec::new(),
+            met: Met::default(),
+            members: Vec::new(),
+            uncovered: Vec::new(),
             room: R::Room::default(),
             scratch: Scratch::default(),
             queues: Queues {
                 next: Paths::default(),
-                nodes: Vec::new(),
+                nodes: R::Nodes::default(),
                 stats: Stats::default(),
                 clock: Clock::start(),
             },
@@ -321,7 +355,9 @@ impl<R: Rules> Workspace<R> {
             if first && looks {
                 self.look(world, rules);
             }
-            self.miss(rules, first);
+            if R::OPEN {
+                self.miss(world, rules, first);
+            }
             self.shade(world, rules, samples);
             if first {
                 // The rows go back to where they came from.
@@ -329,22 +365,24 @@ impl<R: Rules> Workspace<R> {
                 first = false;
             }
         }
-        rules.resolve(&mut self.queues.nodes, samples.keys.len(), &mut self.results.colors);
+        let pixels = &mut self.results.pixels;
+        pixels.clear();
+        pixels.resize(samples.keys.len(), [1.0; 4]);
+        rules.resolve(&mut self.queues.nodes, pixels);
+        self.uncovered.iter().for_each(|&sample| pixels[sample as usize][3] = 0.0);
     }
 
     /// Queues the camera rays.
     fn start(&mut self, samples: &mut Samples) {
         let count = samples.keys.len();
-        let Workspace { queues: Queues { next, nodes, stats, .. }, results, .. } = self;
+        let Workspace { queues: Queues { next, nodes, stats, .. }, uncovered, results, .. } = self;
         next.clear();
         std::mem::swap(&mut next.rays, &mut samples.rays);
         let (kind, depth, cone) = (RayKind::Camera, Depth::default(), Cone { width: 0.0, spread: samples.spread });
         let path = Path { weight: Vec3::ONE, node: 0, index: 0, kind, depth, cone };
         next.paths.extend((0..).zip(&samples.keys).map(|(node, key)| Path { node, index: key.index, ..path }));
-        nodes.clear();
-        nodes.resize(count, R::Node::default());
-        results.covered.clear();
-        results.covered.resize(count, true);
+        nodes.begin(count);
+        uncovered.clear();
         results.seen.clear();
         stats.samples += count as u64;
     }
@@ -366,75 +404,65 @@ impl<R: Rules> Workspace<R> {
         }
     }
 
-    /// Counting sort of the hits by material; misses are set apart.
+    /// Counting sort of the hits by material.
     fn sort_by_material(&mut self, world: &World) {
-        let Workspace { hits, sorted, starts, materials, misses, .. } = self;
+        let Workspace { hits, found, runs, starts, .. } = self;
         let count = world.materials.len();
+        world.geometry.runs(hits, count as u32, found);
         starts.clear();
-        starts.resize(count + 2, 0);
-        misses.clear();
-        world.geometry.materials(hits, count as u32, materials);
+        starts.resize(count + 3, 0);
         // Counted two places on, so that placing them leaves every material's start one place on.
-        for &material in &*materials {
-            if let Some(start) = starts.get_mut(material as usize + 2) {
-                *start += 1;
-            }
-        }
-        for material in 1..=count {
+        found.iter().for_each(|run| starts[run.material as usize + 2] += 1);
+        for material in 1..=count + 1 {
             starts[material + 1] += starts[material];
         }
-        sorted.resize(starts[count + 1] as usize, 0);
-        for (&material, i) in materials.iter().zip(0..) {
-            if material as usize == count {
-                misses.push(i);
-                continue;
-            }
-            let at = &mut starts[material as usize + 1];
-            sorted[*at as usize] = i;
+        runs.clone_from(found);
+        for run in found {
+            let at = &mut starts[run.material as usize + 1];
+            runs[*at as usize] = *run;
             *at += 1;
         }
     }
 
     /// Notes what the camera sees.
     fn look(&mut self, world: &World, rules: &R) {
-        let Workspace { current, hits, materials, results, .. } = self;
-        let miss = world.materials.len() as u32;
-        results.seen.extend(materials.iter().enumerate().map(|(i, &material)| {
-            if material == miss {
+        let Workspace { current, hits, results, .. } = self;
+        results.seen.extend(hits.id.object.iter().enumerate().map(|(i, &object)| {
+            if object == Id::NONE.object {
                 return Seen::NOTHING;
             }
-            let normal = rules.seen(&world.geometry, &current.rays, hits, i);
-            Seen { object: hits.id.object[i], normal }
+            Seen { object, normal: rules.seen(&world.geometry, &current.rays, hits, i) }
         }));
     }
 
-    fn miss(&mut self, rules: &R, first: bool) {
-        let Workspace { current: Paths { rays, paths }, misses, queues, results, .. } = self;
-        for &i in &*misses {
-            let (i, path) = (i as usize, &paths[i as usize]);
+    fn miss(&mut self, world: &World, rules: &R, first: bool) {
+        let Workspace { current: Paths { rays, paths }, runs, starts, uncovered, queues, .. } = self;
+        for i in runs[starts[world.materials.len()] as usize..].iter().flat_map(Run::range) {
+            let path = &paths[i];
             let looks = rays.t_max[i] > 0.0;
-            let node = path.node as usize;
-            let covered = looks && rules.miss(path, rays.direction.get(i), &mut queues.nodes[node]);
-            if first {
-                results.covered[node] = covered;
+            let covered = looks && rules.miss(path, rays.direction.get(i), &mut queues.nodes);
+            if first && !covered {
+                uncovered.push(path.node);
             }
         }
     }
 
     fn shade(&mut self, world: &World, rules: &R, samples: &Samples) {
         let Samples { ref keys, of, .. } = *samples;
-        let Workspace { current: Paths { rays, paths }, hits, sorted, starts, room, queues, .. } = self;
-        let mut from = 0;
-        for (material, &end) in world.materials.iter().zip(&starts[1..]) {
-            let members = &sorted[from..end as usize];
-            from = end as usize;
-            if !members.is_empty() {
-                rules.shade(
-                    &Batch { geometry: &world.geometry, material, members, rays, paths, hits, keys, of },
-                    room,
-                    queues,
-                );
+        let Workspace { current: Paths { rays, paths }, hits, runs, starts, met, members, room, queues, .. } = self;
+        for (number, material) in world.materials.iter().enumerate() {
+            let runs = &runs[starts[number] as usize..starts[number + 1] as usize];
+            if runs.is_empty() {
+                continue;
             }
+            met.gather(rays, hits, runs);
+            members.clear();
+            runs.iter().for_each(|run| members.extend(run.first..run.first + run.count));
+            rules.shade(
+                &Batch { geometry: &world.geometry, material, met, runs, members, paths, keys, of },
+                room,
+                queues,
+            );
         }
     }
 }

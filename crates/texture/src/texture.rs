@@ -208,7 +208,7 @@ impl Texture {
     }
 
     /// The colour that a coefficient mixes: display-encoded red, green, blue within 0 and 1. (Black for NaN.)
-    #[inline]
+    #[inline(always)]
     pub fn color(&self, coefficient: f32) -> [f32; 3] {
         let mix = |i: usize| coefficient * self.initial[i] + (1.0 - coefficient) * self.last[i];
         // `max` makes 0 of NaN, which `clamp` would keep.

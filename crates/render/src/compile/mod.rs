@@ -351,7 +351,7 @@ fn note_darkness(scene: &Scene, compiled: &CompiledScene, diagnostics: &mut Diag
     let results = &workspace.results;
     let seen = results.seen.iter().map(|seen| seen.object != Seen::NOTHING.object);
     let mut lit: Vec<f32> =
-        results.colors.iter().zip(seen).filter(|&(_, seen)| seen).map(|(color, _)| color.max_element()).collect();
+        results.pixels.iter().zip(seen).filter(|&(_, seen)| seen).map(|([r, g, b, _], _)| r.max(*g).max(*b)).collect();
     lit.sort_by(f32::total_cmp);
     // The brightest twentieth of what is seen decides.
     let Some(bright) = lit.get(lit.len() * 19 / 20) else { return };

@@ -169,7 +169,7 @@ impl Bundle {
             reach = t_max.max(reach);
             let objects: L = group_bits(&rays.skip.object, start, skip.object);
             let indices: L = group_bits(&rays.skip.index, start, skip.index);
-            same &= objects.same_bits(object) & indices.same_bits(index) == L::ALL;
+            same &= (objects.same_bits(object) & indices.same_bits(index)) | !alive == u32::MAX;
         }
         let ends = |[x, y, z]: [Span<L>; 3]| {
             let least = Vec3::new(x.least.least(), y.least.least(), z.least.least());

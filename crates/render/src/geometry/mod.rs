@@ -27,7 +27,7 @@ use crate::motion::Motion;
 use few::Few;
 use packet::Packet;
 pub(crate) use plan::{Placement, Plan};
-pub(crate) use rays::{Hits, Ids, RayView, Rays, Rows};
+pub(crate) use rays::{Hits, Ids, Met, RayView, Rays, Rows, Run, group, padded, put_group, spread};
 use simd::Lanes as _;
 pub(crate) use surface::{Surface, Surfaces};
 pub(crate) use traverse::Scratch;
@@ -232,7 +232,7 @@ pub(crate) struct Geometry {
     pub meshes: Vec<MeshShape>,
     pub sphere_sets: Vec<SphereSet>,
     pub objects: Vec<Object>,
-    /// See [`Geometry::only_materials`].
+    /// See `Geometry::only_materials`.
     only_material: Vec<u32>,
 }
 

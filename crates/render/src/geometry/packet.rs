@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::bvh::{Aabb, Child, Kind, Node, Octant, Sides};
 use super::kernel::{self, Crossing, Inverse, Plain, Shear, Slab};
-use super::rays::{Hits, RayView, group, group_bits};
+use super::rays::{Hits, RayView, group, group_bits, put, put_group};
 use super::simd::{Lanes, Simd, Vec3s};
 use super::traverse::{Course, Flight, Nested, STACK, SphereBlock, Tree, TriangleBlock};
 use super::{Hit, Id, PlaneShape};
@@ -134,9 +134,9 @@ impl<'a, L: Lanes> Packet<'a, L> {
     /// Writes what the rays have met.
     #[inline(always)]
     pub fn store(&self, hits: &mut Hits) {
-        put(self.t.store().as_ref(), &mut hits.t[self.start..]);
-        put(self.u.store().as_ref(), &mut hits.u[self.start..]);
-        put(self.v.store().as_ref(), &mut hits.v[self.start..]);
+        put_group(self.t, &mut hits.t[self.start..]);
+        put_group(self.u, &mut hits.u[self.start..]);
+        put_group(self.v, &mut hits.v[self.start..]);
         put(self.ids.object.store_bits().as_ref(), &mut hits.id.object[self.start..]);
         put(self.ids.index.store_bits().as_ref(), &mut hits.id.index[self.start..]);
     }
@@ -497,11 +497,4 @@ impl<L: Lanes, S: Simd> Way<L, S> {
         let far = Vec3s::of([sides[x ^ 1][slot], sides[y ^ 1][slot], sides[z ^ 1][slot]]);
         kernel::slab(near, far, &self.slab)
     }
-}
-
-/// As much of a group's row as there is room for.
-#[inline(always)]
-fn put<T: Copy>(values: &[T], row: &mut [T]) {
-    let count = row.len().min(values.len());
-    row[..count].copy_from_slice(&values[..count]);
 }

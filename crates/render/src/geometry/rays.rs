@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 
-use super::simd::{Lanes, Vec3s};
+use super::simd::{self, Lanes, Simd, Vec3s};
 use super::{Hit, Id, Ray};
 
 /// Points or vectors.
@@ -53,10 +53,45 @@ impl Rows {
         [&self.x[first..][..count], &self.y[first..][..count], &self.z[first..][..count]]
     }
 
+    /// As many as there are lanes from `start` on, all of which the rows must have: see [`padded`].
+    #[inline(always)]
+    pub fn lanes<L: Lanes>(&self, start: usize) -> Vec3s<L> {
+        Vec3s { x: L::load(&self.x[start..]), y: L::load(&self.y[start..]), z: L::load(&self.z[start..]) }
+    }
+
+    /// Writes what [`Rows::lanes`] reads.
+    #[inline(always)]
+    pub fn set_lanes<L: Lanes>(&mut self, start: usize, v: Vec3s<L>) {
+        v.x.write(&mut self.x[start..]);
+        v.y.write(&mut self.y[start..]);
+        v.z.write(&mut self.z[start..]);
+    }
+
     /// [`Rows::slices`], to write to.
     #[inline(always)]
     pub fn slices_mut(&mut self, count: usize) -> [&mut [f32]; 3] {
         [&mut self.x[..count], &mut self.y[..count], &mut self.z[..count]]
+    }
+
+    /// [`Rows::part`], to write to.
+    #[inline(always)]
+    pub fn part_mut(&mut self, first: usize, count: usize) -> [&mut [f32]; 3] {
+        [&mut self.x[first..][..count], &mut self.y[first..][..count], &mut self.z[first..][..count]]
+    }
+
+    /// The same everywhere.
+    pub fn fill(&mut self, v: Vec3) {
+        self.x.fill(v.x);
+        self.y.fill(v.y);
+        self.z.fill(v.z);
+    }
+
+    /// Adds the first of others.
+    pub fn extend(&mut self, other: &Rows, count: usize) {
+        let [x, y, z] = other.slices(count);
+        self.x.extend_from_slice(x);
+        self.y.extend_from_slice(y);
+        self.z.extend_from_slice(z);
     }
 
     fn each(&mut self, f: impl FnMut(&mut Vec<f32>)) {
@@ -144,6 +179,15 @@ impl Rays {
         self.time.extend(ray.time);
     }
 
+    /// Adds `count` rays that go on without end, in a world where nothing moves.
+    pub fn extend(&mut self, count: usize, origin: &Rows, direction: &Rows, skip: &Ids) {
+        self.origin.extend(origin, count);
+        self.direction.extend(direction, count);
+        self.t_max.resize(self.origin.x.len(), f32::INFINITY);
+        self.skip.object.extend_from_slice(&skip.object[..count]);
+        self.skip.index.extend_from_slice(&skip.index[..count]);
+    }
+
     /// Makes these rays some of others, in an order.
     pub fn gather(&mut self, others: &Rays, order: &[u32]) {
         fn pick<T: Copy>(to: &mut Vec<T>, from: &[T], order: &[u32]) {
@@ -214,9 +258,15 @@ impl Rows {
 /// Most lanes that there are.
 const MOST: usize = 16;
 
+/// So many numbers and as many more as fill the lanes: what those hold means nothing.
+#[inline(always)]
+pub(crate) fn padded(count: usize) -> usize {
+    count.next_multiple_of(MOST)
+}
+
 /// As many of a row as there are lanes, filled up at its end.
 #[inline(always)]
-pub(super) fn group<L: Lanes>(row: &[f32], start: usize, fill: f32) -> L {
+pub(crate) fn group<L: Lanes>(row: &[f32], start: usize, fill: f32) -> L {
     if row.len() - start >= L::COUNT { L::load(&row[start..]) } else { L::load(&filled(&row[start..], fill)) }
 }
 
@@ -229,6 +279,22 @@ pub(super) fn group_bits<L: Lanes>(row: &[u32], start: usize, fill: u32) -> L {
 #[inline(always)]
 fn filled<T: Copy>(row: &[T], fill: T) -> [T; MOST] {
     std::array::from_fn(|i| row.get(i).copied().unwrap_or(fill))
+}
+
+/// As much of a group as there is room for.
+#[inline(always)]
+pub(super) fn put<T: Copy>(group: &[T], row: &mut [T]) {
+    if row.len() >= group.len() {
+        row[..group.len()].copy_from_slice(group);
+    } else {
+        row.iter_mut().zip(group).for_each(|(to, from)| *to = *from);
+    }
+}
+
+/// [`put`] of lanes.
+#[inline(always)]
+pub(crate) fn put_group<L: Lanes>(group: L, row: &mut [f32]) {
+    put(group.store().as_ref(), row);
 }
 
 /// What rays met first: see [`Hit`] for what the rows mean.
@@ -252,4 +318,111 @@ impl Hits {
     pub fn get(&self, i: usize) -> Hit {
         Hit { t: self.t[i], u: self.u[i], v: self.v[i], id: self.id.get(i), time: self.time.get(i).copied() }
     }
+}
+
+/// A stretch of hits on the same object, all of one material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Run {
+    pub first: u32,
+    pub count: u32,
+    pub object: u32,
+    pub material: u32,
+}
+
+impl Run {
+    /// The positions of its hits.
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
+
+/// Rays that have met something, and what, in rows: some of the rays of a wave, moved together. The rows are [`padded`].
+#[derive(Debug, Default)]
+pub(crate) struct Met {
+    pub origin: Rows,
+    pub direction: Rows,
+    pub hits: Hits,
+}
+
+impl Met {
+    /// Takes the rays of some runs.
+    pub fn gather(&mut self, rays: &Rays, hits: &Hits, runs: &[Run]) {
+        simd::run(Gather { met: self, rays, hits, runs });
+    }
+
+    /// A ray, as far as it matters when it has arrived.
+    #[inline]
+    pub fn ray(&self, i: usize) -> Ray {
+        let (origin, direction) = (self.origin.get(i), self.direction.get(i));
+        let time = self.hits.time.get(i).copied();
+        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, skip: Id::NONE, time }
+    }
+}
+
+/// [`Met::gather`] as a kernel.
+struct Gather<'a> {
+    met: &'a mut Met,
+    rays: &'a Rays,
+    hits: &'a Hits,
+    runs: &'a [Run],
+}
+
+impl simd::Kernel for Gather<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Gather { met: Met { origin, direction, hits: to }, rays, hits: from, runs } = self;
+        let count = runs.iter().map(|run| run.count as usize).sum();
+        take(&mut origin.x, &rays.origin.x, runs, count);
+        take(&mut origin.y, &rays.origin.y, runs, count);
+        take(&mut origin.z, &rays.origin.z, runs, count);
+        take(&mut direction.x, &rays.direction.x, runs, count);
+        take(&mut direction.y, &rays.direction.y, runs, count);
+        take(&mut direction.z, &rays.direction.z, runs, count);
+        take(&mut to.t, &from.t, runs, count);
+        take(&mut to.u, &from.u, runs, count);
+        take(&mut to.v, &from.v, runs, count);
+        take(&mut to.id.object, &from.id.object, runs, count);
+        take(&mut to.id.index, &from.id.index, runs, count);
+        to.time.clear();
+        if !from.time.is_empty() {
+            take(&mut to.time, &from.time, runs, count);
+        }
+    }
+}
+
+/// Takes the numbers of some runs, `count` altogether. Whole registers are moved, though runs end anywhere: the next run
+/// writes over what is too much.
+#[inline(always)]
+fn take<T: Copy + Default>(to: &mut Vec<T>, from: &[T], runs: &[Run], count: usize) {
+    to.resize(padded(count) + MOST, T::default());
+    let mut at = 0;
+    for run in runs {
+        let range = run.range();
+        for i in range.clone().step_by(MOST) {
+            let to: &mut [T; MOST] = to[at + i - range.start..].first_chunk_mut().expect("there is room for one more");
+            match from[i..].first_chunk() {
+                Some(whole) => *to = *whole,
+                None => to.iter_mut().zip(&from[i..]).for_each(|(to, from)| *to = *from),
+            }
+        }
+        at += range.len();
+    }
+    to.truncate(padded(count));
+}
+
+/// Numbers for all members of a batch, of which each run has one; [`padded`].
+#[inline(always)]
+pub(crate) fn spread(to: &mut Vec<f32>, runs: &[Run], count: usize, of: impl Fn(&Run) -> f32) {
+    to.resize(padded(count) + MOST, 0.0);
+    let mut at = 0;
+    for run in runs {
+        let value = of(run);
+        for i in (0..run.count as usize).step_by(MOST) {
+            *to[at + i..].first_chunk_mut().expect("there is room for one more") = [value; MOST];
+        }
+        at += run.count as usize;
+    }
+    to.truncate(padded(count));
 }

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::analytic;
 use super::simd::{self, Simd};
-use super::{Geometry, Hit, Hits, Id, MeshShape, Ray, Rays, Rows, Shape, SphereSet};
+use super::{Geometry, Hit, Hits, Id, MeshShape, Met, Ray, Rows, Run, Shape, SphereSet};
 use crate::math;
 use crate::mesh_file::MeshFile;
 
@@ -72,24 +72,29 @@ impl simd::Kernel for OntoSpheres<'_> {
 }
 
 impl Geometry {
-    /// The surfaces at the hits of `members`.
-    pub fn surfaces(&self, members: &[u32], rays: &Rays, hits: &Hits, surfaces: &mut Surfaces) {
-        surfaces.resize(members.len());
-        for (i, &member) in members.iter().enumerate() {
-            let member = member as usize;
-            let object = &self.objects[hits.id.object[member] as usize];
-            if let Shape::Sphere { center, radius } = object.shape {
-                let outward = rays.origin.get(member) + rays.direction.get(member) * hits.t[member] - center;
-                surfaces.point.set(i, center);
-                surfaces.geometric.set(i, outward);
-                surfaces.radius[i] = radius;
+    /// The surfaces that rays have met; `runs` says on which objects.
+    pub fn surfaces(&self, met: &Met, runs: &[Run], surfaces: &mut Surfaces) {
+        let count = runs.iter().map(|run| run.count as usize).sum();
+        surfaces.resize(count);
+        let mut all = 0..count;
+        for run in runs {
+            let members = all.by_ref().take(run.count as usize);
+            if let Shape::Sphere { center, radius } = self.objects[run.object as usize].shape {
+                for i in members {
+                    let outward = met.origin.get(i) + met.direction.get(i) * met.hits.t[i] - center;
+                    surfaces.point.set(i, center);
+                    surfaces.geometric.set(i, outward);
+                    surfaces.radius[i] = radius;
+                }
                 continue;
             }
-            let surface = self.surface(&rays.get(member), &hits.get(member));
-            surfaces.point.set(i, surface.point);
-            surfaces.geometric.set(i, surface.geometric);
-            surfaces.normal.set(i, surface.normal);
-            surfaces.radius[i] = -1.0;
+            for i in members {
+                let surface = self.surface(&met.ray(i), &met.hits.get(i));
+                surfaces.point.set(i, surface.point);
+                surfaces.geometric.set(i, surface.geometric);
+                surfaces.normal.set(i, surface.normal);
+                surfaces.radius[i] = -1.0;
+            }
         }
         simd::run(OntoSpheres { surfaces });
     }
@@ -262,13 +267,24 @@ impl Geometry {
         outward.normalize_or(Vec3::Z)
     }
 
-    /// The material at every hit; `none` where there is no hit.
-    pub fn materials(&self, hits: &Hits, none: u32, materials: &mut Vec<u32>) {
-        materials.clear();
-        materials.extend(hits.id.object.iter().enumerate().map(|(i, &object)| {
+    /// The hits in runs of one object and material, which is `none` where nothing is hit.
+    pub fn runs(&self, hits: &Hits, none: u32, runs: &mut Vec<Run>) {
+        runs.clear();
+        let objects = &hits.id.object;
+        let mut first = 0;
+        while let Some(&object) = objects.get(first) {
             let only = self.only_material.get(object as usize).copied().unwrap_or(none);
-            if only == MANY { self.material_of(hits.id.get(i)) } else { only }
-        }));
+            let same = alike(&objects[first..]);
+            let (material, count) = if only == MANY {
+                let material = |i: usize| self.material_of(hits.id.get(i));
+                let of_first = material(first);
+                (of_first, 1 + (first + 1..first + same).take_while(|&i| material(i) == of_first).count())
+            } else {
+                (only, same)
+            };
+            runs.push(Run { first: first as u32, count: count as u32, object, material });
+            first += count;
+        }
     }
 
     /// The material of a primitive.
@@ -300,6 +316,16 @@ pub(super) fn sphere_uv(p: Vec3) -> Vec2 {
     let longitude = math::atan2(p.y, p.x) / std::f32::consts::TAU;
     let u = if longitude < 0.0 { longitude + 1.0 } else { longitude };
     Vec2::new(u, math::acos(p.z.clamp(-1.0, 1.0)) / std::f32::consts::PI)
+}
+
+/// How many numbers from the first on are the same.
+fn alike(numbers: &[u32]) -> usize {
+    const STEP: usize = 16;
+    let first = numbers[0];
+    // Without branches in between, a step at a time is compared in registers.
+    let differs = |step: &[u32]| step.iter().fold(0, |all, number| all | (number ^ first)) != 0;
+    let whole = numbers.chunks_exact(STEP).take_while(|step| !differs(step)).count() * STEP;
+    whole + numbers[whole..].iter().take_while(|&&number| number == first).count()
 }
 
 /// In place of a material: different triangles have different ones.

@@ -1,35 +1,39 @@
 //! Hits in the report's meaning, all of a batch at once: each coordinate lies in a row of its own, so that the loops
 //! over them are vectorised.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
-use super::{Gathered, MAX_BOUNCES, Report, ReportLight, T_MIN, UNLIT};
+use super::gathered::Gathered;
+use super::{MAX_BOUNCES, Report, ReportLight, T_MIN, UNLIT};
 use crate::clock::Stage;
-use crate::geometry::simd::{self, Simd};
-use crate::geometry::{Geometry, Hit, Ids, Ray, RayView, Rows, Scratch, Shape};
+use crate::geometry::simd::{self, Lanes, Simd, Vec3s};
+use crate::geometry::{Geometry, Hit, Met, Ray, RayView, Rows, Scratch, Shape, padded, spread};
 use crate::material::{Coat, Gloss, Material, Response};
 use crate::math;
 use crate::wave::{Batch, Path, Queues, RayKind};
 
-/// One thread's room for the hits of a batch.
+/// One thread's room for the hits of a batch; its rows are [`padded`].
 #[derive(Default)]
 pub(crate) struct Room {
     pub position: Rows,
-    /// Not of unit length for triangles and planes.
-    pub normal: Rows,
+    /// Not of unit length for triangles and planes; empty where it is `outward`.
+    normal: Rows,
     /// From the reference point of the texture, of unit length: see [`Report::reference`].
     pub outward: Rows,
+    reference: Rows,
+    radii: Vec<f32>,
     /// Of points of spheres over their centres, over their radii.
     pub heights: Vec<f32>,
     /// Whether all are points of spheres.
     pub round: bool,
     pub texture_points: Rows,
-    pub colors: Vec<[f32; 3]>,
-    ids: Ids,
+    pub coefficients: Vec<f32>,
+    pub colors: Rows,
     sight: Sight,
     /// Light from the lights.
     direct: Rows,
     blocked: Vec<bool>,
+    mirrored: Rows,
     scratch: Scratch,
 }
 
@@ -39,8 +43,6 @@ struct Sight {
     direction: Rows,
     /// Where rays towards the light end; before their beginning where nothing arrives.
     t_max: Vec<f32>,
-    /// Between the light and the normal.
-    cosine: Vec<f32>,
     /// What arrives if nothing is in the way.
     light: Rows,
 }
@@ -48,55 +50,68 @@ struct Sight {
 impl Room {
     /// Positions, normals and directions of a batch.
     pub fn locate(&mut self, report: &Report, batch: &Batch<'_>) {
-        let count = batch.members.len();
-        self.position.resize(count);
-        self.normal.resize(count);
-        self.outward.resize(count);
-        self.ids.resize(count);
-        self.heights.resize(count, 0.0);
-        let heights = &mut self.heights[..count];
-        let (mut position, mut outward) = (self.position.slices_mut(count), self.outward.slices_mut(count));
-        let (objects, indices) = (&mut self.ids.object[..count], &mut self.ids.index[..count]);
-        let mut round = true;
-        for (i, &member) in batch.members.iter().enumerate() {
-            let member = member as usize;
-            let p = batch.rays.origin.get(member) + batch.rays.direction.get(member) * batch.hits.t[member];
-            put(&mut position, i, p);
-            let id = batch.hits.id.get(member);
-            (objects[i], indices[i]) = (id.object, id.index);
-            let center = match batch.geometry.objects[id.object as usize].shape {
-                Shape::Sphere { center, radius } => {
-                    heights[i] = (p.y - center.y) / radius;
-                    center
-                }
-                _ => {
-                    round = false;
-                    report.reference(batch.geometry, &batch.hits.get(member))
-                }
-            };
-            put(&mut outward, i, p - center);
+        let Room { position, normal, outward, reference, radii, heights, round, .. } = self;
+        let (count, geometry) = (batch.len(), batch.geometry);
+        let shape = |object: u32| geometry.objects[object as usize].shape;
+        let ball = |object: u32| match shape(object) {
+            Shape::Sphere { center, radius } => center.extend(radius),
+            _ => Vec4::ONE,
+        };
+        spread(&mut reference.x, batch.runs, count, |run| ball(run.object).x);
+        spread(&mut reference.y, batch.runs, count, |run| ball(run.object).y);
+        spread(&mut reference.z, batch.runs, count, |run| ball(run.object).z);
+        spread(radii, batch.runs, count, |run| ball(run.object).w);
+        *round = batch.runs.iter().all(|run| matches!(shape(run.object), Shape::Sphere { .. }));
+        if !*round {
+            (0..count).for_each(|i| reference.set(i, report.reference(geometry, &batch.hit(i))));
         }
-        simd::run(Normalize { rows: &mut self.outward });
-        self.round = round;
-        if round {
-            self.normal.clone_from(&self.outward);
-            return;
-        }
-        for (i, &object) in self.ids.object.iter().enumerate() {
-            let normal = match batch.geometry.objects[object as usize].shape {
-                Shape::Sphere { .. } => self.outward.get(i),
-                Shape::Plane(index) => report.plane_normals[index as usize],
-                _ => facing_normal(batch.geometry, &batch.ray(i), &batch.hit(i)),
-            };
-            self.normal.set(i, normal);
+        heights.resize(padded(count), 0.0);
+        position.resize(padded(count));
+        outward.resize(padded(count));
+        simd::run(Locate { met: batch.met, reference, radii, heights, position, outward });
+        normal.resize(if *round { 0 } else { padded(count) });
+        if !*round {
+            for (i, &object) in batch.met.hits.id.object[..count].iter().enumerate() {
+                let of_shape = match shape(object) {
+                    Shape::Sphere { .. } => outward.get(i),
+                    Shape::Plane(index) => report.plane_normals[index as usize],
+                    _ => facing_normal(geometry, &batch.ray(i), &batch.hit(i)),
+                };
+                normal.set(i, of_shape);
+            }
         }
     }
 }
 
-/// Writes point `i` of three rows.
-#[inline(always)]
-fn put(rows: &mut [&mut [f32]; 3], i: usize, p: Vec3) {
-    (rows[0][i], rows[1][i], rows[2][i]) = (p.x, p.y, p.z);
+/// Finds the points where rays arrive, the directions to them from points of reference, and their heights over those.
+struct Locate<'a> {
+    met: &'a Met,
+    reference: &'a Rows,
+    radii: &'a [f32],
+    heights: &'a mut [f32],
+    position: &'a mut Rows,
+    /// Of unit length; zero for points of reference.
+    outward: &'a mut Rows,
+}
+
+impl simd::Kernel for Locate<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Locate { met, reference, radii, heights, position, outward } = self;
+        let (zero, one, infinite) = (S::Wide::splat(0.0), S::Wide::splat(1.0), S::Wide::splat(f32::INFINITY));
+        for i in (0..heights.len()).step_by(S::Wide::COUNT) {
+            let t = S::Wide::load(&met.hits.t[i..]);
+            let point = met.origin.lanes::<S::Wide>(i).add(met.direction.lanes(i).scale(t));
+            let out = point.sub(reference.lanes(i));
+            let scale = one.div(out.dot(out).sqrt());
+            let scale = scale.select_lt(infinite, scale, zero);
+            position.set_lanes(i, point);
+            outward.set_lanes(i, out.scale(scale));
+            out.y.div(S::Wide::load(&radii[i..])).write(&mut heights[i..]);
+        }
+    }
 }
 
 /// Texture coordinates of points of spheres.
@@ -121,39 +136,19 @@ impl simd::Kernel for SphereUvs<'_> {
     }
 }
 
-/// Makes vectors unit vectors; those without a length become zero.
-struct Normalize<'a> {
-    rows: &'a mut Rows,
-}
-
-impl simd::Kernel for Normalize<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self) {
-        let count = self.rows.x.len();
-        let [x, y, z] = self.rows.slices_mut(count);
-        for i in 0..count {
-            let scale = 1.0 / (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
-            let scale = if scale < f32::INFINITY { scale } else { 0.0 };
-            (x[i], y[i], z[i]) = (x[i] * scale, y[i] * scale, z[i] * scale);
-        }
-    }
-}
-
 impl Report {
     /// Light from the lights; nothing in between may be hit, glass included.
     pub(super) fn direct(&self, batch: &Batch<'_>, room: &mut Room, queues: &mut Queues<Gathered>) {
-        let Room { position, normal, colors, ids, sight, direct, blocked, scratch, .. } = room;
-        let (count, material) = (batch.members.len(), batch.material);
+        let Room { position, normal, outward, round, colors, sight, direct, blocked, scratch, .. } = room;
+        let (normal, material) = (if *round { &*outward } else { &*normal }, batch.material);
         let lobe = match material.response {
             Response::Matte(Coat::Phong { specular: Gloss::Color(specular), power, .. }) => Some((specular, power)),
             _ => None,
         };
         direct.clear();
-        direct.resize(count);
+        direct.resize(padded(batch.len()));
         if self.lights.is_empty() && lobe.is_none() {
-            colors.iter().enumerate().for_each(|(i, color)| direct.set(i, UNLIT * Vec3::from_array(*color)));
+            (0..batch.len()).for_each(|i| direct.set(i, UNLIT * colors.get(i)));
         }
         for light in &self.lights {
             let points = LightPoints { position, normal, colors };
@@ -161,11 +156,12 @@ impl Report {
             if let Some(lobe) = lobe {
                 sight.add_lobe(light, lobe, batch, points);
             }
+            sight.t_max[batch.len()..].fill(-1.0);
             let rays = RayView {
                 origin: position,
                 direction: &sight.direction,
                 t_max: &sight.t_max,
-                skip: ids,
+                skip: &batch.met.hits.id,
                 t_min: T_MIN,
                 time: &[],
             };
@@ -175,11 +171,7 @@ impl Report {
             queues.clock.lap(Stage::Trace);
             simd::run(Gather { light: &sight.light, blocked, direct });
         }
-        let gain = Share::of(material).gain;
-        for (i, &member) in batch.members.iter().enumerate() {
-            let node = &mut queues.nodes[batch.paths[member as usize].node as usize];
-            (node.direct, node.gain) = (direct.get(i), gain);
-        }
+        queues.nodes.note(batch.paths[0].node as usize, batch.runs, direct, Share::of(material).gain);
     }
 }
 
@@ -188,7 +180,7 @@ impl Report {
 struct LightPoints<'a> {
     position: &'a Rows,
     normal: &'a Rows,
-    colors: &'a [[f32; 3]],
+    colors: &'a Rows,
 }
 
 /// Looks from points to a light.
@@ -204,37 +196,33 @@ impl simd::Kernel for See<'_> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let See { light, points: LightPoints { position, normal, colors }, sight } = self;
-        let count = colors.len();
+        let count = position.x.len();
         sight.resize(count);
-        let ([px, py, pz], [nx, ny, nz]) = (position.slices(count), normal.slices(count));
-        let [dx, dy, dz] = sight.direction.slices_mut(count);
-        let [red, green, blue] = sight.light.slices_mut(count);
-        let (t_max, cosines) = (&mut sight.t_max[..count], &mut sight.cosine[..count]);
-        for i in 0..count {
-            let (x, y, z) = (light.position.x - px[i], light.position.y - py[i], light.position.z - pz[i]);
-            let distance = (x * x + y * y + z * z).sqrt();
-            let inverse = 1.0 / distance;
-            (dx[i], dy[i], dz[i]) = (x * inverse, y * inverse, z * inverse);
-            let cosine = nx[i] * dx[i] + ny[i] * dy[i] + nz[i] * dz[i];
-            cosines[i] = cosine;
+        let (zero, one, infinite) = (S::Wide::splat(0.0), S::Wide::splat(1.0), S::Wide::splat(f32::INFINITY));
+        let (center, color, range) =
+            (Vec3s::splat(light.position), Vec3s::splat(light.color), S::Wide::splat(light.range));
+        for i in (0..count).step_by(S::Wide::COUNT) {
+            let to = center.sub(position.lanes::<S::Wide>(i));
+            let distance = to.dot(to).sqrt();
+            let direction = to.scale(one.div(distance));
+            let cosine = normal.lanes(i).dot(direction);
             // The cosine and the linear decay; comparisons fail for points in the light itself.
-            let share = cosine * (1.0 - distance / light.range);
-            let share = if cosine > 0.0 && distance <= light.range { share } else { 0.0 };
-            red[i] = light.color.x * colors[i][0] * share;
-            green[i] = light.color.y * colors[i][1] * share;
-            blue[i] = light.color.z * colors[i][2] * share;
-            let total = red[i].abs() + green[i].abs() + blue[i].abs();
-            t_max[i] = reach(total, distance);
+            let share = cosine.mul(one.sub(distance.div(range)));
+            let share = S::Wide::select(zero.lt(cosine) & distance.le(range), share, zero);
+            let Vec3s { x: red, y: green, z: blue } = color.mul(colors.lanes(i)).scale(share);
+            let total = red.max(zero.sub(red)).add(green.max(zero.sub(green))).add(blue.max(zero.sub(blue)));
+            let reaches = zero.lt(total) & total.lt(infinite);
+            sight.direction.set_lanes(i, direction);
+            sight.light.set_lanes(i, Vec3s { x: red, y: green, z: blue });
+            let reach = distance.mul(S::Wide::splat(BEHIND));
+            S::Wide::select(reaches, reach, S::Wide::splat(-1.0)).write(&mut sight.t_max[i..]);
         }
     }
 }
 
-/// Where the ray towards a light ends that would bring `total`. A little behind the light, so that a surface through
-/// the light itself is in the way everywhere; nowhere for no light, or a broken one.
-#[inline(always)]
-fn reach(total: f32, distance: f32) -> f32 {
-    if total > 0.0 && total < f32::INFINITY { distance * 1.000_01 } else { -1.0 }
-}
+/// Where rays towards a light end, in distances to it: a little behind it, so that a surface through the light itself is
+/// in the way everywhere.
+const BEHIND: f32 = 1.000_01;
 
 impl Sight {
     #[inline(always)]
@@ -242,7 +230,6 @@ impl Sight {
         self.direction.resize(count);
         self.light.resize(count);
         self.t_max.resize(count, -1.0);
-        self.cosine.resize(count, 0.0);
     }
 
     /// What the light gives to a glossy surface in place of a matte one. (The light's range has no part in it.)
@@ -253,14 +240,17 @@ impl Sight {
         batch: &Batch<'_>,
         points: LightPoints<'_>,
     ) {
-        for (i, &member) in batch.members.iter().enumerate() {
-            let along = batch.rays.direction.get(member as usize);
-            let (normal, direction, cosine) = (points.normal.get(i), self.direction.get(i), self.cosine[i]);
+        for i in 0..batch.len() {
+            let along = batch.met.direction.get(i);
+            let (normal, direction) = (points.normal.get(i), self.direction.get(i));
+            let cosine = normal.dot(direction);
             let mirrored = (normal * (2.0 * cosine) - direction).normalize_or(normal);
-            let color = Vec3::from_array(points.colors[i]);
+            let color = points.colors.get(i);
             let lit = 0.5 * color * cosine + specular * light.color * signed_power(mirrored.dot(along), power);
             self.light.set(i, lit);
-            self.t_max[i] = reach(lit.abs().element_sum(), (light.position - points.position.get(i)).length());
+            let total = lit.abs().element_sum();
+            let distance = (light.position - points.position.get(i)).length();
+            self.t_max[i] = if total > 0.0 && total < f32::INFINITY { distance * BEHIND } else { -1.0 };
         }
     }
 }
@@ -287,16 +277,16 @@ impl simd::Kernel for Gather<'_> {
 }
 
 /// What a material makes of the light from around.
-pub(super) struct Share {
-    pub reflected: f32,
-    pub refracted: f32,
+struct Share {
+    reflected: f32,
+    refracted: f32,
     eta: f32,
     /// What the sum of all light is multiplied by.
-    pub gain: f32,
+    gain: f32,
 }
 
 impl Share {
-    pub fn of(material: &Material) -> Share {
+    fn of(material: &Material) -> Share {
         let (reflected, refracted, eta) = match material.response {
             Response::Mirror => (1.0, 0.0, 0.0),
             Response::Glass { eta, .. } => (0.0, 1.0, eta),
@@ -319,38 +309,63 @@ fn facing_normal(geometry: &Geometry, ray: &Ray, hit: &Hit) -> Vec3 {
     }
 }
 
-/// Queues the secondary rays of a batch.
-pub(super) fn spawn_all(batch: &Batch<'_>, room: &Room, queues: &mut Queues<Gathered>) {
-    let share = Share::of(batch.material);
-    if share.reflected == 0.0 && share.refracted == 0.0 {
-        return;
-    }
-    for (i, &member) in batch.members.iter().enumerate() {
-        let path = batch.path(i);
+impl Room {
+    /// Queues the secondary rays of a batch, with a node for each.
+    pub fn spawn(&mut self, batch: &Batch<'_>, queues: &mut Queues<Gathered>) {
+        let Room { position, normal, outward, round, mirrored, .. } = self;
+        let normal = if *round { &*outward } else { &*normal };
+        let share = Share::of(batch.material);
+        // All rays of a wave have bounced as often.
+        let (path, first) = (batch.path(0), batch.paths[0].node);
         if path.depth.total() >= MAX_BOUNCES {
-            continue;
+            return;
         }
-        let (d, normal) = (batch.rays.direction.get(member as usize), room.normal.get(i));
-        let (origin, skip) = (room.position.get(i), room.ids.get(i));
-        let from = |direction| Ray { origin, direction, t_min: T_MIN, t_max: f32::INFINITY, skip, time: None };
+        let Queues { next, nodes, .. } = queues;
         if share.reflected > 0.0 {
-            let mirrored = d - normal * (2.0 * normal.dot(d));
-            spawn(path, from(mirrored.normalize_or(d)), share.reflected, RayKind::Reflection, queues);
+            mirrored.resize(padded(batch.len()));
+            simd::run(Mirror { direction: &batch.met.direction, normal, mirrored });
+            let path = Path { kind: RayKind::Reflection, depth: path.depth.reflected(), ..*path };
+            let node = nodes.len() as u32..;
+            next.rays.extend(batch.len(), position, mirrored, &batch.met.hits.id);
+            next.paths.extend(node.zip(batch.members).map(|(node, _)| Path { node, ..path }));
+            nodes.spawn(batch.members.iter().map(|member| first + member), share.reflected);
         }
-        if share.refracted > 0.0
-            && let Some(direction) = refract(d, normal, share.eta)
-        {
-            spawn(path, from(direction), share.refracted, RayKind::Refraction, queues);
+        if share.refracted > 0.0 {
+            let path = Path { kind: RayKind::Refraction, depth: path.depth.refracted(), ..*path };
+            for (i, member) in batch.members.iter().enumerate() {
+                if let Some(direction) = refract(batch.met.direction.get(i), normal.get(i), share.eta) {
+                    let (origin, skip) = (position.get(i), batch.met.hits.id.get(i));
+                    let ray = Ray { origin, direction, t_min: T_MIN, t_max: f32::INFINITY, skip, time: None };
+                    next.push(ray, Path { node: nodes.len() as u32, ..path });
+                    nodes.spawn(std::iter::once(first + member), share.refracted);
+                }
+            }
         }
     }
 }
 
-/// Queues a secondary ray with a node of its own.
-fn spawn(path: &Path, ray: Ray, share: f32, kind: RayKind, queues: &mut Queues<Gathered>) {
-    let node = queues.nodes.len() as u32;
-    queues.nodes.push(Gathered { parent: path.node, share, ..Gathered::default() });
-    let depth = if kind == RayKind::Refraction { path.depth.refracted() } else { path.depth.reflected() };
-    queues.next.push(ray, Path { weight: Vec3::ONE, node, index: path.index, kind, depth, cone: path.cone });
+/// Mirrors directions.
+struct Mirror<'a> {
+    direction: &'a Rows,
+    normal: &'a Rows,
+    mirrored: &'a mut Rows,
+}
+
+impl simd::Kernel for Mirror<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Mirror { direction, normal, mirrored } = self;
+        let (zero, one, infinite) = (S::Wide::splat(0.0), S::Wide::splat(1.0), S::Wide::splat(f32::INFINITY));
+        for i in (0..mirrored.x.len()).step_by(S::Wide::COUNT) {
+            let (d, normal) = (direction.lanes::<S::Wide>(i), normal.lanes(i));
+            let m = d.sub(normal.scale(S::Wide::splat(2.0).mul(normal.dot(d))));
+            let scale = one.div(m.dot(m).sqrt());
+            let sane = zero.lt(scale) & scale.lt(infinite);
+            mirrored.set_lanes(i, Vec3s::select(sane, m.scale(scale), d));
+        }
+    }
 }
 
 /// The refracted direction. (Snell's law has `m |h|` where the original has `m`.)

@@ -87,7 +87,7 @@ fn ward([u, v, w]: [Vec3; 3], back: Vec3, light: Vec3, [ax, ay]: [f32; 2]) -> f3
 
 impl Sunflow {
     /// Rays into the Phong lobe around the mirror direction.
-    pub(super) fn glossy_phong(&self, point: &Point<'_>, power: f32, samples: u32, queues: &mut Queues<Vec3>) {
+    pub(super) fn glossy_phong(&self, point: &Point<'_>, power: f32, samples: u32, queues: &mut Queues<Vec<Vec3>>) {
         let count = self.glossy_count(point, samples);
         let around = point.mirrored();
         let scale = (power + 2.0) / (power + 1.0) / count as f32;
@@ -107,7 +107,7 @@ impl Sunflow {
         frame: [Vec3; 3],
         [ax, ay]: [f32; 2],
         samples: u32,
-        queues: &mut Queues<Vec3>,
+        queues: &mut Queues<Vec<Vec3>>,
     ) {
         let count = self.glossy_count(point, samples);
         let ([u, v, w], back) = (frame, -point.direction);
@@ -139,7 +139,14 @@ impl Sunflow {
         }
     }
 
-    fn glossy(&self, point: &Point<'_>, direction: Vec3, weight: f32, [i, count]: [u32; 2], queues: &mut Queues<Vec3>) {
+    fn glossy(
+        &self,
+        point: &Point<'_>,
+        direction: Vec3,
+        weight: f32,
+        [i, count]: [u32; 2],
+        queues: &mut Queues<Vec<Vec3>>,
+    ) {
         if weight <= 0.0 || direction.dot(point.surface.geometric) <= 0.0 {
             return;
         }

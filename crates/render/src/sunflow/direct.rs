@@ -72,14 +72,14 @@ impl Shadows {
     }
 
     /// Traces what is queued if it is much.
-    pub fn flush(&mut self, geometry: &Geometry, queues: &mut Queues<Vec3>, scratch: &mut Scratch) {
+    pub fn flush(&mut self, geometry: &Geometry, queues: &mut Queues<Vec<Vec3>>, scratch: &mut Scratch) {
         if self.nodes.len() >= Shadows::FULL {
             self.trace(geometry, queues, scratch);
         }
     }
 
     /// Traces what is queued and hands out what arrives.
-    pub fn trace(&mut self, geometry: &Geometry, queues: &mut Queues<Vec3>, scratch: &mut Scratch) {
+    pub fn trace(&mut self, geometry: &Geometry, queues: &mut Queues<Vec<Vec3>>, scratch: &mut Scratch) {
         queues.stats.shadow_rays += self.nodes.len() as u64;
         queues.clock.lap(Stage::Shade);
         let Shadows { rays, light, nodes, blocked, sorted } = self;
@@ -339,7 +339,13 @@ impl<L: Single> simd::Kernel for Reach<'_, L> {
 
 impl Sunflow {
     /// Direct light on surfaces, one light after the other, so that the rays towards it go together.
-    pub(super) fn illuminate(&self, geometry: &Geometry, lit: &[Lit<'_>], room: &mut Room, queues: &mut Queues<Vec3>) {
+    pub(super) fn illuminate(
+        &self,
+        geometry: &Geometry,
+        lit: &[Lit<'_>],
+        room: &mut Room,
+        queues: &mut Queues<Vec<Vec3>>,
+    ) {
         let mut all_wait = false;
         for (light, number) in self.lights.iter().zip(0..) {
             if light.is_single() && !all_wait {
@@ -390,7 +396,7 @@ pub(super) fn shine(
     geometry: &Geometry,
     coats: &[Lit<'_>],
     room: &mut Room,
-    queues: &mut Queues<Vec3>,
+    queues: &mut Queues<Vec<Vec3>>,
 ) {
     let Room { waiting, fan, shadows, scratch, .. } = room;
     for first in (0..waiting.node.len()).step_by(FAN) {

@@ -79,7 +79,7 @@ impl simd::Kernel for Above<'_> {
 
 impl Sunflow {
     /// Indirect light on a matte surface of a colour.
-    pub(super) fn gather(&self, point: &Point<'_>, color: Vec3, room: &mut Room, queues: &mut Queues<Vec3>) {
+    pub(super) fn gather(&self, point: &Point<'_>, color: Vec3, room: &mut Room, queues: &mut Queues<Vec<Vec3>>) {
         let depth = point.path.depth;
         if depth.diffuse >= self.max_diffuse {
             return;
@@ -123,7 +123,7 @@ impl Sunflow {
         samples: u32,
         distance: f32,
         room: &mut Room,
-        queues: &mut Queues<Vec3>,
+        queues: &mut Queues<Vec<Vec3>>,
     ) {
         self.emit(point, dark, queues);
         let endless = distance <= 0.0;

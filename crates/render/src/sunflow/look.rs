@@ -18,7 +18,7 @@ impl Sunflow {
         point: &Point<'_>,
         look: Look,
         room: &mut Room,
-        queues: &mut Queues<Vec3>,
+        queues: &mut Queues<Vec<Vec3>>,
     ) {
         match look {
             Look::Normals => self.emit(point, (point.surface.normal + Vec3::ONE) * 0.5, queues),
@@ -45,7 +45,7 @@ impl Sunflow {
         point: &Point<'_>,
         line: Vec3,
         width: f32,
-        queues: &mut Queues<Vec3>,
+        queues: &mut Queues<Vec<Vec3>>,
     ) {
         let near = batch.geometry.triangle(&point.hit).is_some_and(|corners| {
             let [a, b, c] = corners;

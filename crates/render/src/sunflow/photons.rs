@@ -12,6 +12,7 @@ use super::halton::halton;
 use super::point::Point;
 use super::{Batch, Coat, Path, Queues, Response, Room, Rules, Sunflow};
 use crate::clock::Spent;
+use crate::film::Pixel;
 use crate::geometry::{Geometry, Hits, Rays};
 use crate::light::Light;
 use crate::material::luminance;
@@ -263,13 +264,13 @@ impl<'a> Sender<'a> {
 }
 
 impl Rules for Sender<'_> {
-    type Node = ();
+    type Nodes = ();
     type Room = PhotonRoom;
     const T_MIN: f32 = 0.0;
 
     fn shade(&self, batch: &Batch<'_>, room: &mut PhotonRoom, queues: &mut Queues<()>) {
         room.shading.prepare(batch, &mut queues.clock);
-        for i in 0..batch.members.len() {
+        for i in 0..batch.len() {
             let point = room.shading.point(batch, i);
             self.meet(batch, &point, &mut room.kept, queues);
         }
@@ -283,5 +284,5 @@ impl Rules for Sender<'_> {
         Vec3::ZERO
     }
 
-    fn resolve(&self, _: &mut [()], _: usize, _: &mut Vec<Vec3>) {}
+    fn resolve(&self, (): &mut (), _: &mut [Pixel]) {}
 }

@@ -114,8 +114,8 @@ pub(super) enum Which {
 impl Points {
     /// Surfaces of a batch, turned towards the rays. Their bumps are timed as textures.
     pub fn locate(&mut self, batch: &Batch<'_>, clock: &mut Clock) {
-        let count = batch.members.len();
-        batch.geometry.surfaces(batch.members, batch.rays, batch.hits, &mut self.surfaces);
+        let count = batch.len();
+        batch.geometry.surfaces(batch.met, batch.runs, &mut self.surfaces);
         self.front.resize(count);
         self.cosine.resize(count, 0.0);
         self.inside.resize(count, false);
@@ -132,8 +132,8 @@ impl Points {
             }
             clock.lap(Stage::Texture);
         }
-        for (i, &member) in batch.members.iter().enumerate() {
-            let direction = batch.rays.direction.get(member as usize);
+        for i in 0..count {
+            let direction = batch.met.direction.get(i);
             let Surface { point, mut geometric, mut normal } = self.surfaces.get(i);
             let inside = direction.dot(geometric) >= 0.0;
             if inside {
@@ -144,28 +144,26 @@ impl Points {
             self.inside[i] = inside;
             self.cosine[i] = (-direction.dot(normal)).max(0.0);
             self.front.set(i, offset(point, geometric));
-            let id = batch.hits.id.get(member as usize);
+            let id = batch.met.hits.id.get(i);
             self.skip.set(i, if batch.geometry.is_flat(id.object) { id } else { Id::NONE });
         }
     }
 
     /// The side of the square of the surface for which a ray stands: between the sides of the slanting patch that it sees.
     pub fn footprint(&self, batch: &Batch<'_>, i: usize) -> f32 {
-        let t = batch.hits.t[batch.members[i] as usize];
-        batch.path(i).cone.after(t).width / self.cosine[i].max(0.01).sqrt()
+        batch.path(i).cone.after(batch.met.hits.t[i]).width / self.cosine[i].max(0.01).sqrt()
     }
 
     pub fn get<'a>(&self, batch: &Batch<'a>, i: usize, color: Vec3, gloss: Vec3) -> Point<'a> {
-        let member = batch.members[i] as usize;
-        let path = &batch.paths[member];
+        let path = &batch.paths[batch.members[i] as usize];
         let SampleKey { pixel, .. } = batch.keys[path.node as usize];
         Point {
             path,
-            direction: batch.rays.direction.get(member),
+            direction: batch.met.direction.get(i),
             key: SampleKey { pixel, index: path.index },
             share: batch.of.isqrt(),
             of: batch.of,
-            hit: batch.hits.get(member),
+            hit: batch.hit(i),
             surface: self.surfaces.get(i),
             inside: self.inside[i],
             cosine: self.cosine[i],
@@ -173,7 +171,7 @@ impl Points {
             gloss,
             front: self.front.get(i),
             skip: self.skip.get(i),
-            curvature: if self.inside[i] { 0.0 } else { batch.geometry.curvature(batch.hits.id.object[member]) },
+            curvature: if self.inside[i] { 0.0 } else { batch.geometry.curvature(batch.met.hits.id.object[i]) },
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::geometry::Surface;
 use crate::wave::{Path, RayKind};
 
 impl Sunflow {
-    pub(super) fn reflect(&self, point: &Point<'_>, tint: Vec3, queues: &mut Queues<Vec3>) {
+    pub(super) fn reflect(&self, point: &Point<'_>, tint: Vec3, queues: &mut Queues<Vec<Vec3>>) {
         let depth = point.path.depth;
         if depth.reflection < self.max_reflection && depth.diffuse == 0 {
             let weight = point.path.weight * tint;
@@ -19,7 +19,7 @@ impl Sunflow {
 
     /// Clear glass. Sunflow: the Fresnel term keeps its index on the way out, and inside only total reflection
     /// reflects (R7).
-    pub(super) fn glass(&self, point: &Point<'_>, eta: f32, absorption: Vec3, queues: &mut Queues<Vec3>) {
+    pub(super) fn glass(&self, point: &Point<'_>, eta: f32, absorption: Vec3, queues: &mut Queues<Vec<Vec3>>) {
         let mut tint = point.color;
         if point.inside && absorption != Vec3::ZERO {
             tint *= transmittance(absorption, point.hit.t);

@@ -31,7 +31,13 @@ impl VirtualLights {
 
     /// Light of one set on matte surfaces, one virtual light after the other. Of the samples of a pixel each takes its
     /// part of the set.
-    pub(super) fn illuminate(&self, geometry: &Geometry, lit: &[Lit<'_>], room: &mut Room, queues: &mut Queues<Vec3>) {
+    pub(super) fn illuminate(
+        &self,
+        geometry: &Geometry,
+        lit: &[Lit<'_>],
+        room: &mut Room,
+        queues: &mut Queues<Vec<Vec3>>,
+    ) {
         let set = |lit: &Lit<'_>| {
             let [choice, _] = lit.point.key.pair(lit.point.dimension(Which::Choice));
             ((choice * self.sets.len() as f32) as usize).min(self.sets.len() - 1)
@@ -57,7 +63,7 @@ impl VirtualLights {
         geometry: &Geometry,
         lit: &[Lit<'_>],
         room: &mut Room,
-        queues: &mut Queues<Vec3>,
+        queues: &mut Queues<Vec<Vec3>>,
     ) {
         let (mut rays, mut askers) = (Rays::default(), Vec::new());
         for Lit { point, color, .. } in lit {

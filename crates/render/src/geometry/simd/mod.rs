@@ -49,6 +49,11 @@ pub(crate) trait Lanes: Copy {
     fn select(mask: u32, yes: Self, no: Self) -> Self;
     /// Bit i is set where lane i of `self` has the bits of that of `other`.
     fn same_bits(self, other: Self) -> u32;
+    /// Writes the lanes to the first of the values, of which there must be enough.
+    #[inline(always)]
+    fn write(self, values: &mut [f32]) {
+        values[..Self::COUNT].copy_from_slice(self.store().as_ref());
+    }
     /// The smallest lane.
     fn least(self) -> f32;
     /// The largest lane.
@@ -167,6 +172,11 @@ impl<S: Lanes> Vec3s<S> {
     pub fn load(v: &[[f32; 8]; 3]) -> Self {
         Vec3s { x: S::load(&v[0]), y: S::load(&v[1]), z: S::load(&v[2]) }
     }
+    /// [`Lanes::select`] of each component.
+    #[inline(always)]
+    pub fn select(mask: u32, yes: Self, no: Self) -> Self {
+        Vec3s { x: S::select(mask, yes.x, no.x), y: S::select(mask, yes.y, no.y), z: S::select(mask, yes.z, no.z) }
+    }
     #[inline(always)]
     pub fn store(self) -> [S::Floats; 3] {
         [self.x.store(), self.y.store(), self.z.store()]
@@ -183,6 +193,16 @@ impl<S: Lanes> Vec3s<S> {
     #[inline(always)]
     pub fn mul(self, o: Self) -> Self {
         Vec3s { x: self.x.mul(o.x), y: self.y.mul(o.y), z: self.z.mul(o.z) }
+    }
+    /// Component by component.
+    #[inline(always)]
+    pub fn min(self, o: Self) -> Self {
+        Vec3s { x: self.x.min(o.x), y: self.y.min(o.y), z: self.z.min(o.z) }
+    }
+    /// Component by component.
+    #[inline(always)]
+    pub fn max(self, o: Self) -> Self {
+        Vec3s { x: self.x.max(o.x), y: self.y.max(o.y), z: self.z.max(o.z) }
     }
     #[inline(always)]
     pub fn scale(self, s: S) -> Self {
