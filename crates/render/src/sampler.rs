@@ -67,12 +67,19 @@ impl SampleKey {
         sobol_pair(151_800, index)
     }
 
-    /// Two independent uniform numbers in [0, 1), without stratification.
+    /// What [`random_pair`] takes, but for the pixel, with which it is combined by exclusive or.
     #[inline(always)]
-    pub fn random_pair(&self, dimension: u32) -> [f32; 2] {
-        let a = hash(self.pixel ^ hash(self.index ^ hash(dimension)));
-        [unit(a), unit(hash(a ^ 0x68bc_21eb))]
+    pub fn hash_index(index: u32, dimension: u32) -> u32 {
+        hash(index ^ hash(dimension))
     }
+}
+
+/// Two independent uniform numbers in [0, 1), without stratification, for a pixel and an index: see
+/// [`SampleKey::hash_index`].
+#[inline(always)]
+pub(crate) fn random_pair(bits: u32) -> [f32; 2] {
+    let a = hash(bits);
+    [unit(a), unit(hash(a ^ 0x68bc_21eb))]
 }
 
 /// The lower 16 bits, with a zero before each.
@@ -181,6 +188,8 @@ mod tests {
         let mean = |f: &dyn Fn(u32) -> f32| (0..4096).map(f).sum::<f32>() / 4096.0;
         assert!((mean(&|x| SampleKey::new(x, 0, 0, 0).pair(0)[0]) - 0.5).abs() < 0.02);
         assert!((mean(&|d| SampleKey::new(3, 4, 0, 0).pair(d)[1]) - 0.5).abs() < 0.02);
-        assert!((mean(&|s| SampleKey::new(3, 4, 0, u64::from(s) << 32).random_pair(0)[1]) - 0.5).abs() < 0.02);
+        let random =
+            |s| random_pair(SampleKey::new(3, 4, 0, u64::from(s) << 32).pixel ^ SampleKey::hash_index(0, 0))[1];
+        assert!((mean(&random) - 0.5).abs() < 0.02);
     }
 }

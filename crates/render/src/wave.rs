@@ -130,6 +130,8 @@ pub(crate) struct Samples {
     /// Rays that end before they begin where the lens sees nothing.
     pub rays: Rays,
     pub keys: Vec<SampleKey>,
+    /// Room for those who aim them.
+    pub bits: Vec<u32>,
     /// How many each pixel has once all are traced.
     pub of: u32,
     /// That of each sample's cone.

@@ -73,12 +73,6 @@ impl Rows {
         [&mut self.x[..count], &mut self.y[..count], &mut self.z[..count]]
     }
 
-    /// [`Rows::part`], to write to.
-    #[inline(always)]
-    pub fn part_mut(&mut self, first: usize, count: usize) -> [&mut [f32]; 3] {
-        [&mut self.x[first..][..count], &mut self.y[first..][..count], &mut self.z[first..][..count]]
-    }
-
     /// The same everywhere.
     pub fn fill(&mut self, v: Vec3) {
         self.x.fill(v.x);

@@ -2,9 +2,10 @@
 
 use glam::Vec3;
 
-use crate::geometry::simd::{self, Simd};
+use crate::geometry::simd::{self, Lanes, Simd, Vec3s};
+use crate::geometry::{Rows, group, put_group};
 use crate::math;
-use crate::sampler::SampleKey;
+use crate::sampler::{SampleKey, random_pair};
 use crate::wave::{Samples, Shots};
 
 /// The camera. Its focal length is in pixels of the scene's own width, so that another output size crops.
@@ -39,12 +40,21 @@ impl ReportCamera {
     }
 
     /// Origin and unit direction of the ray through a position in pixels from the top left.
-    #[inline(always)]
     pub fn ray(&self, x: f32, y: f32) -> (Vec3, Vec3) {
-        let plane = self.forward + self.right * (x - self.half[0]) + self.down * (y - self.half[1]);
+        let at = |v: f32| simd::Portable::splat(v);
+        let [x, y, z] = self.directions(at(x), at(y)).store().map(|lanes| lanes[0]);
+        (self.eye, Vec3::new(x, y, z))
+    }
+
+    /// Directions through positions on the image plane, of unit length.
+    #[inline(always)]
+    fn directions<L: Lanes>(&self, x: L, y: L) -> Vec3s<L> {
+        let right = Vec3s::splat(self.right).scale(x.sub(L::splat(self.half[0])));
+        let down = Vec3s::splat(self.down).scale(y.sub(L::splat(self.half[1])));
+        let plane = Vec3s::splat(self.forward).add(right).add(down);
         // The position on the image plane is relative to the eye already, and the eye is taken off once more: it is
         // what the original did.
-        (self.eye, (plane - self.eye).normalize_or(self.forward))
+        plane.sub(Vec3s::splat(self.eye)).unit_or(Vec3s::splat(self.forward))
     }
 }
 
@@ -81,35 +91,121 @@ impl simd::Kernel for Aim<'_> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let Aim { camera, grid, shots, seed, samples } = self;
-        let step = 0.5 / grid.edge as f32;
         let alone = grid.edge * grid.edge * grid.repeats == 1;
-        // The cell of a sample is the same in all pixels: divided once, unless there are very many.
-        let cells: [[u32; 2]; CHUNK] = std::array::from_fn(|index| grid.cell(index as u32));
-        let count = samples.rays.len();
-        let mut each = shots.iter();
+        let (rows, bits, each) = (&mut samples.rays.direction, &mut samples.bits, shots.indices.len());
+        let count = rows.x.len();
+        bits.resize(count, 0);
+        let mut cells = Cells::new(grid, shots, 0);
+        for (number, &pixel) in shots.pixels.iter().enumerate() {
+            for first in (0..each).step_by(CHUNK) {
+                if each > CHUNK {
+                    cells = Cells::new(grid, shots, first);
+                }
+                cells.write(pixel, seed, number * each + first, rows, bits);
+            }
+        }
+        let half = S::Wide::splat(0.5);
         for start in (0..count).step_by(CHUNK) {
-            let size = CHUNK.min(count - start);
-            let (mut pixels, mut indices) = ([[0; CHUNK]; 2], [0; CHUNK]);
-            let mut corners = [[0.0; CHUNK]; 2];
-            for (i, (pixel, index)) in each.by_ref().take(size).enumerate() {
-                let cell = cells.get(index as usize).copied().unwrap_or_else(|| grid.cell(index));
-                indices[i] = index;
-                for axis in 0..2 {
-                    pixels[axis][i] = pixel[axis];
-                    corners[axis][i] = pixel[axis] as f32 + (cell[axis] + 1) as f32 * step;
+            let end = count.min(start + CHUNK);
+            let mut jitter = [[0.5; CHUNK]; 2];
+            if !alone {
+                let mut own = [0; CHUNK];
+                own[..end - start].copy_from_slice(&bits[start..end]);
+                let [x, y] = &mut jitter;
+                for i in 0..CHUNK {
+                    [x[i], y[i]] = random_pair(own[i]);
                 }
             }
-            let mut directions = [[0.0; CHUNK]; 3];
-            for i in 0..CHUNK {
-                let jitter = SampleKey::new(pixels[0][i], pixels[1][i], indices[i], seed).random_pair(0);
+            for i in (start..end).step_by(S::Wide::COUNT) {
                 // Cells are not stratified: the jitter is as wide as the pixel.
-                let at = |axis: usize| corners[axis][i] + if alone { 0.5 } else { jitter[axis] } - 0.5;
-                let (_, direction) = camera.ray(at(0), at(1));
-                (directions[0][i], directions[1][i], directions[2][i]) = (direction.x, direction.y, direction.z);
+                let at = |row: &[f32], jitter: &[f32; CHUNK]| {
+                    group::<S::Wide>(row, i, 0.0).add(S::Wide::load(&jitter[i - start..])).sub(half)
+                };
+                let Vec3s { x, y, z } = camera.directions(at(&rows.x, &jitter[0]), at(&rows.y, &jitter[1]));
+                put_group(x, &mut rows.x[i..]);
+                put_group(y, &mut rows.y[i..]);
+                put_group(z, &mut rows.z[i..]);
             }
-            let [x, y, z] = samples.rays.direction.slices_mut(count);
-            for (row, directions) in [x, y, z].into_iter().zip(&directions) {
-                row[start..start + size].copy_from_slice(&directions[..size]);
+        }
+    }
+}
+
+/// Where some of a pixel's samples lie, and what makes them differ: the same in all pixels.
+struct Cells {
+    size: usize,
+    offset: [[f32; CHUNK]; 2],
+    hash: [u32; CHUNK],
+}
+
+impl Cells {
+    /// Those of `shots` from number `first` on.
+    #[inline(always)]
+    fn new(grid: Grid, shots: &Shots<'_>, first: usize) -> Cells {
+        let step = 0.5 / grid.edge as f32;
+        let size = CHUNK.min(shots.indices.len() - first);
+        let mut cells = Cells { size, offset: [[0.0; CHUNK]; 2], hash: [0; CHUNK] };
+        for i in 0..size {
+            let index = shots.indices.start + (first + i) as u32;
+            let [column, row] = grid.cell(index);
+            cells.offset[0][i] = (column + 1) as f32 * step;
+            cells.offset[1][i] = (row + 1) as f32 * step;
+            cells.hash[i] = SampleKey::hash_index(index, 0);
+        }
+        cells
+    }
+
+    /// Writes the corners of the samples' cells, from sample `start` on, and the bits that make their jitter. Some are
+    /// written at a time, though pixels have fewer: the next pixel writes over what is too much.
+    #[inline(always)]
+    fn write(&self, [x, y]: [u32; 2], seed: u64, start: usize, rows: &mut Rows, bits: &mut [u32]) {
+        let key = SampleKey::new(x, y, 0, seed);
+        for i in (0..self.size).step_by(STEP) {
+            overwrite(&mut rows.x[start + i..], std::array::from_fn(|k| x as f32 + self.offset[0][i + k]));
+            overwrite(&mut rows.y[start + i..], std::array::from_fn(|k| y as f32 + self.offset[1][i + k]));
+            overwrite(&mut bits[start + i..], std::array::from_fn(|k| key.pixel ^ self.hash[i + k]));
+        }
+    }
+}
+
+/// Samples of a pixel that are written together.
+const STEP: usize = 4;
+
+/// Writes values, as many as there is room for.
+#[inline(always)]
+fn overwrite<T>(row: &mut [T], values: [T; STEP]) {
+    match row.first_chunk_mut() {
+        Some(whole) => *whole = values,
+        None => row.iter_mut().zip(values).for_each(|(to, from)| *to = from),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_aimed_together_as_alone() {
+        let place = [Vec3::new(0.5, -1.0, 8.0), Vec3::new(0.1, 0.0, 0.0), Vec3::new(0.2, 1.0, 0.0)];
+        let camera = ReportCamera::new(place, 60.0, 640, [640, 480]);
+        let pixels: Vec<_> = (0..13).map(|i| [17 * i % 31, 5 * i % 23]).collect();
+        let mut samples = Samples::default();
+        for (edge, repeats, indices) in
+            [(1, 1, 0..1), (2, 1, 0..4), (1, 3, 0..3), (2, 17, 0..68), (2, 17, 64..68), (4, 5, 0..80), (8, 3, 1..192)]
+        {
+            let (grid, of) = (Grid { edge, repeats }, edge * edge * repeats);
+            let shots = Shots { pixels: &pixels, indices, of };
+            camera.samples(grid, &shots, 9, &mut samples);
+            for (i, ([x, y], index)) in shots.iter().enumerate() {
+                let key = SampleKey::new(x, y, 0, 9);
+                let jitter = random_pair(key.pixel ^ SampleKey::hash_index(index, 0));
+                let cell = [index / repeats / edge, index / repeats % edge];
+                let at = |axis: usize| {
+                    let corner = [x, y][axis] as f32 + (cell[axis] + 1) as f32 * (0.5 / edge as f32);
+                    corner + if of == 1 { 0.5 } else { jitter[axis] } - 0.5
+                };
+                let (origin, direction) = camera.ray(at(0), at(1));
+                let ray = samples.rays.get(i);
+                assert_eq!((ray.origin, ray.direction), (origin, direction), "sample {i} of {grid:?}");
             }
         }
     }

@@ -357,13 +357,10 @@ impl simd::Kernel for Mirror<'_> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let Mirror { direction, normal, mirrored } = self;
-        let (zero, one, infinite) = (S::Wide::splat(0.0), S::Wide::splat(1.0), S::Wide::splat(f32::INFINITY));
         for i in (0..mirrored.x.len()).step_by(S::Wide::COUNT) {
             let (d, normal) = (direction.lanes::<S::Wide>(i), normal.lanes(i));
             let m = d.sub(normal.scale(S::Wide::splat(2.0).mul(normal.dot(d))));
-            let scale = one.div(m.dot(m).sqrt());
-            let sane = zero.lt(scale) & scale.lt(infinite);
-            mirrored.set_lanes(i, Vec3s::select(sane, m.scale(scale), d));
+            mirrored.set_lanes(i, m.unit_or(d));
         }
     }
 }

@@ -172,6 +172,13 @@ impl<S: Lanes> Vec3s<S> {
     pub fn load(v: &[[f32; 8]; 3]) -> Self {
         Vec3s { x: S::load(&v[0]), y: S::load(&v[1]), z: S::load(&v[2]) }
     }
+    /// Vectors of unit length, and others where that cannot be.
+    #[inline(always)]
+    pub fn unit_or(self, others: Self) -> Self {
+        let scale = S::splat(1.0).div(self.dot(self).sqrt());
+        let sane = S::splat(0.0).lt(scale) & scale.lt(S::splat(f32::INFINITY));
+        Self::select(sane, self.scale(scale), others)
+    }
     /// [`Lanes::select`] of each component.
     #[inline(always)]
     pub fn select(mask: u32, yes: Self, no: Self) -> Self {
