@@ -59,6 +59,7 @@ mod report;
 mod sampler;
 mod sunflow;
 mod swatch;
+mod threads;
 mod tile;
 mod wave;
 

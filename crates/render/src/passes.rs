@@ -19,6 +19,7 @@ use crate::clock::Spent;
 use crate::compile::{CompiledScene, Meaning, Sampling};
 use crate::film::{Encoding, Film, Pixel};
 use crate::options::{Cancelled, Observer, RenderOptions, ResumeError, Stats};
+use crate::threads;
 use crate::tile::{Active, Rect, Spread, Sum, TILE, Tile};
 use crate::wave::{Results, Rules, Samples, Shots, Workspace};
 
@@ -69,29 +70,17 @@ pub(crate) fn render(
     from: Option<&Checkpoint>,
     observer: &dyn Observer,
 ) -> Result<(Film, Stats), ResumeError> {
-    match &scene.meaning {
+    threads::run(options.threads, || match &scene.meaning {
         Meaning::Sunflow { rules, .. } => {
             let state = Job::new(scene, rules, options, observer).state(from)?;
-            in_pool(options, || {
-                let (rules, spent) = rules.prepare(&scene.world, observer);
-                Ok(Job::new(scene, &rules, options, observer).finish(state, spent)?)
-            })
+            let (rules, spent) = rules.prepare(&scene.world, observer);
+            Ok(Job::new(scene, &rules, options, observer).finish(state, spent)?)
         }
         Meaning::Report { rules, .. } => {
             let job = Job::new(scene, rules, options, observer);
-            let state = job.state(from)?;
-            in_pool(options, || Ok(job.finish(state, Spent::default())?))
+            Ok(job.finish(job.state(from)?, Spent::default())?)
         }
-    }
-}
-
-/// Runs work on as many threads as asked for.
-fn in_pool<T: Send>(options: &RenderOptions, work: impl FnOnce() -> T + Send) -> T {
-    match rayon::ThreadPoolBuilder::new().num_threads(options.threads.unwrap_or(0)).build() {
-        Ok(pool) => pool.install(work),
-        // No threads to be had: work goes on in this one's own pool.
-        Err(_) => work(),
-    }
+    })
 }
 
 /// How far a rendering is.
@@ -107,7 +96,7 @@ struct State {
 }
 
 /// One rendering under way.
-struct Job<'a, R> {
+struct Job<'a, R: Rules> {
     scene: &'a CompiledScene,
     rules: &'a R,
     options: &'a RenderOptions,
@@ -123,6 +112,8 @@ struct Job<'a, R> {
     total: AtomicU64,
     /// Somebody wants a checkpoint: threads stop after their waves.
     paused: AtomicBool,
+    /// Rooms that no thread works in.
+    rooms: Mutex<Vec<Box<Room<R>>>>,
 }
 
 impl<'a, R: Rules> Job<'a, R> {
@@ -137,7 +128,8 @@ impl<'a, R: Rules> Job<'a, R> {
         let frame = wider(crop, scene.taps().reach(), scene.size);
         let region = wider(frame, passes.len() as u32 - 1, scene.size);
         let (done, total, paused) = (AtomicU64::new(0), AtomicU64::new(0), AtomicBool::new(false));
-        Job { scene, rules, options, observer, passes, crop, frame, region, done, total, paused }
+        let rooms = Mutex::default();
+        Job { scene, rules, options, observer, passes, crop, frame, region, done, total, paused, rooms }
     }
 
     /// Whether samples decide about more samples.
@@ -221,7 +213,7 @@ impl<'a, R: Rules> Job<'a, R> {
         loop {
             let State { tiles, film, .. } = &mut *state;
             let left = tiles.par_iter_mut().filter(|tile| !tile.is_finished());
-            let gathered = left.map_init(Room::default, |room, tile| self.work(tile, pass, film, room));
+            let gathered = left.map(|tile| self.in_room(|room| self.work(tile, pass, film, room)));
             *stats = stats.plus(gathered.reduce(Stats::default, Stats::plus));
             // Asked in this order, whoever is cancelled in between gets his checkpoint.
             let cancelled = self.observer.cancelled();
@@ -236,6 +228,16 @@ impl<'a, R: Rules> Job<'a, R> {
                 return Ok(());
             }
         }
+    }
+
+    /// Works in a room that is free, or a new one: there are never more than threads.
+    fn in_room<T>(&self, work: impl FnOnce(&mut Room<R>) -> T) -> T {
+        let rooms = || self.rooms.lock().unwrap_or_else(PoisonError::into_inner);
+        let free = rooms().pop();
+        let mut room = free.unwrap_or_default();
+        let result = work(&mut room);
+        rooms().push(room);
+        result
     }
 
     /// Whether threads should leave their tiles as they are.
@@ -360,9 +362,11 @@ impl<'a, R: Rules> Job<'a, R> {
         rows.flat_map(move |row| columns.clone().map(move |column| (column, row))).filter(move |&at| at != (x, y))
     }
 
-    /// A film for the frame.
+    /// A film for the frame. All threads clear it, which is no small part of the work for pictures of one sample.
     fn film(&self) -> Film {
-        Film::new(self.frame.width(), self.frame.height(), self.encoding())
+        let [width, height] = [self.frame.width(), self.frame.height()];
+        let pixels = rayon::iter::repeat_n([0.0; 4], self.frame.pixels() as usize).collect();
+        Film { width, height, pixels, encoding: self.encoding() }
     }
 
     fn encoding(&self) -> Encoding {

@@ -237,7 +237,7 @@ impl Batch<'_> {
 }
 
 /// Where the light of the paths is gathered.
-pub(crate) trait Nodes: Default {
+pub(crate) trait Nodes: Default + Send {
     /// Makes one node for each of so many camera samples, which have met nothing yet.
     fn begin(&mut self, samples: usize);
 }
@@ -260,7 +260,7 @@ pub(crate) trait Rules: Sync {
     /// Where light is gathered.
     type Nodes: Nodes;
     /// One thread's room for shading, used again and again.
-    type Room: Default;
+    type Room: Default + Send;
     /// The smallest distance of a hit.
     const T_MIN: f32;
     /// Whether what meets nothing brings light, or leaves its pixel uncovered: if not, nobody asks.

@@ -108,8 +108,8 @@ struct Span<L> {
 
 impl<L: Lanes> Span<L> {
     #[inline(always)]
-    fn between(least: f32, most: f32) -> Self {
-        Span { least: L::splat(least), most: L::splat(most) }
+    fn at(x: L) -> Self {
+        Span { least: x, most: x }
     }
 
     /// Includes the lanes of a mask. What is not a number is left out.
@@ -146,14 +146,27 @@ impl<L: Lanes> Span<L> {
     }
 }
 
+/// The least and the largest numbers of all lanes.
+#[inline(always)]
+fn ends<L: Lanes>([x, y, z]: [Span<L>; 3]) -> [Vec3; 2] {
+    let least = Vec3::new(x.least.least(), y.least.least(), z.least.least());
+    [least, Vec3::new(x.most.most(), y.most.most(), z.most.most())]
+}
+
+/// The same numbers along an axis in all lanes.
+#[inline(always)]
+fn span<L: Lanes>([least, most]: [Vec3; 2], axis: usize) -> Span<L> {
+    Span { least: L::splat(least[axis]), most: L::splat(most[axis]) }
+}
+
 impl Bundle {
     #[inline(always)]
     fn of<L: Lanes>(rays: RayView<'_>, first: usize, end: usize) -> Bundle {
-        let mut origin = [Span::<L>::between(f32::INFINITY, f32::NEG_INFINITY); 3];
+        let mut origin = [span::<L>([Vec3::INFINITY, Vec3::NEG_INFINITY], 0); 3];
         let mut direction = origin;
         let mut reach = L::splat(f32::NEG_INFINITY);
         let skip = Id { object: rays.skip.object[first], index: rays.skip.index[first] };
-        let [object, index] = [skip.object, skip.index].map(f32::from_bits).map(L::splat);
+        let (object, index) = (L::splat(f32::from_bits(skip.object)), L::splat(f32::from_bits(skip.index)));
         let mut same = true;
         for start in (first..end).step_by(L::COUNT) {
             let t_max: L = group(rays.t_max, start, -1.0);
@@ -171,10 +184,6 @@ impl Bundle {
             let indices: L = group_bits(&rays.skip.index, start, skip.index);
             same &= (objects.same_bits(object) & indices.same_bits(index)) | !alive == u32::MAX;
         }
-        let ends = |[x, y, z]: [Span<L>; 3]| {
-            let least = Vec3::new(x.least.least(), y.least.least(), z.least.least());
-            [least, Vec3::new(x.most.most(), y.most.most(), z.most.most())]
-        };
         let skip = if same { skip } else { Id::NONE };
         Bundle { origin: ends(origin), direction: ends(direction), t_max: reach.most(), skip }
     }
@@ -187,13 +196,10 @@ impl Bundle {
         }
         let centers = Vec3s::<S>::load(&block.centers);
         let radii = S::load(&block.radii);
-        let span = |[least, most]: [Vec3; 2], axis: usize| Span::<S>::between(least[axis], most[axis]);
-        let from = |axis: usize, center: S| {
-            let Span { least, most } = span(self.origin, axis);
-            Span { least: least.sub(center), most: most.sub(center) }
-        };
         // From the centres to the origins.
-        let (x, y, z) = (from(0, centers.x), from(1, centers.y), from(2, centers.z));
+        let x = span(self.origin, 0).sub(Span::at(centers.x));
+        let y = span(self.origin, 1).sub(Span::at(centers.y));
+        let z = span(self.origin, 2).sub(Span::at(centers.z));
         let (dx, dy, dz) = (span(self.direction, 0), span(self.direction, 1), span(self.direction, 2));
         let (distance2, length2) =
             (x.square().add(y.square()).add(z.square()), dx.square().add(dy.square()).add(dz.square()));

@@ -117,11 +117,11 @@ impl simd::Kernel for Aim<'_> {
                 }
             }
             for i in (start..end).step_by(S::Wide::COUNT) {
+                let (jx, jy) = (S::Wide::load(&jitter[0][i - start..]), S::Wide::load(&jitter[1][i - start..]));
                 // Cells are not stratified: the jitter is as wide as the pixel.
-                let at = |row: &[f32], jitter: &[f32; CHUNK]| {
-                    group::<S::Wide>(row, i, 0.0).add(S::Wide::load(&jitter[i - start..])).sub(half)
-                };
-                let Vec3s { x, y, z } = camera.directions(at(&rows.x, &jitter[0]), at(&rows.y, &jitter[1]));
+                let x = group::<S::Wide>(&rows.x, i, 0.0).add(jx).sub(half);
+                let y = group::<S::Wide>(&rows.y, i, 0.0).add(jy).sub(half);
+                let Vec3s { x, y, z } = camera.directions(x, y);
                 put_group(x, &mut rows.x[i..]);
                 put_group(y, &mut rows.y[i..]);
                 put_group(z, &mut rows.z[i..]);
