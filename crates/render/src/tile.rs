@@ -23,9 +23,9 @@ impl Sum {
         let mut color = self.color;
         for sample in samples {
             (0..4).for_each(|i| color[i] += sample[i]);
-            self.count += 1.0;
         }
         self.color = color;
+        self.count += samples.len() as f32;
     }
 
     pub fn mean(&self) -> Pixel {

@@ -129,6 +129,7 @@ impl Shots<'_> {
 pub(crate) struct Samples {
     /// Rays that end before they begin where the lens sees nothing.
     pub rays: Rays,
+    /// None where nothing that follows is random.
     pub keys: Vec<SampleKey>,
     /// Room for those who aim them.
     pub bits: Vec<u32>,
@@ -280,14 +281,15 @@ pub(crate) trait Rules: Sync {
     /// What the camera sees at a hit: the normal.
     fn seen(&self, geometry: &Geometry, rays: &Rays, hits: &Hits, i: usize) -> Vec3;
 
-    /// Writes the light of the camera samples, of which there are as many as pixels; the last of the four numbers is not
-    /// its business.
+    /// Writes the light of the camera samples, of which there are as many as pixels, and that they are covered.
     fn resolve(&self, nodes: &mut Self::Nodes, pixels: &mut [Pixel]);
 }
 
 /// One thread's room for waves, used again and again.
 pub(crate) struct Workspace<R: Rules> {
     current: Paths,
+    /// Those of the camera samples, while they wait for the next ones.
+    camera: Vec<Path>,
     hits: Hits,
     /// Runs of hits, as they come, and sorted by material: misses last.
     found: Vec<Run>,
@@ -308,6 +310,7 @@ impl<R: Rules> Default for Workspace<R> {
     fn default() -> Self {
         Workspace {
             current: Paths::default(),
+            camera: Vec::new(),
             hits: Hits::default(),
             found: Vec::new(),
             runs: Vec::new(),
@@ -364,25 +367,33 @@ impl<R: Rules> Workspace<R> {
             if first {
                 // The rows go back to where they came from.
                 std::mem::swap(&mut self.current.rays, &mut samples.rays);
+                std::mem::swap(&mut self.current.paths, &mut self.camera);
                 first = false;
             }
         }
         let pixels = &mut self.results.pixels;
-        pixels.clear();
-        pixels.resize(samples.keys.len(), [1.0; 4]);
+        pixels.resize(samples.rays.len(), [0.0; 4]);
         rules.resolve(&mut self.queues.nodes, pixels);
         self.uncovered.iter().for_each(|&sample| pixels[sample as usize][3] = 0.0);
     }
 
     /// Queues the camera rays.
     fn start(&mut self, samples: &mut Samples) {
-        let count = samples.keys.len();
-        let Workspace { queues: Queues { next, nodes, stats, .. }, uncovered, results, .. } = self;
+        let count = samples.rays.len();
+        let Workspace { queues: Queues { next, nodes, stats, .. }, camera, uncovered, results, .. } = self;
         next.clear();
         std::mem::swap(&mut next.rays, &mut samples.rays);
         let (kind, depth, cone) = (RayKind::Camera, Depth::default(), Cone { width: 0.0, spread: samples.spread });
         let path = Path { weight: Vec3::ONE, node: 0, index: 0, kind, depth, cone };
-        next.paths.extend((0..).zip(&samples.keys).map(|(node, key)| Path { node, index: key.index, ..path }));
+        if samples.keys.is_empty() {
+            // All that there were are what they will be.
+            camera.truncate(count);
+            camera.extend((camera.len() as u32..count as u32).map(|node| Path { node, ..path }));
+        } else {
+            camera.clear();
+            camera.extend((0..).zip(&samples.keys).map(|(node, key)| Path { node, index: key.index, ..path }));
+        }
+        std::mem::swap(&mut next.paths, camera);
         nodes.begin(count);
         uncovered.clear();
         results.seen.clear();

@@ -31,7 +31,7 @@ impl ReportCamera {
 
     /// Aims the samples of a wave. (They need no keys: nothing that follows is random.)
     pub fn samples(&self, grid: Grid, shots: &Shots<'_>, seed: u64, samples: &mut Samples) {
-        samples.resize(shots.count());
+        samples.rays.resize(shots.count());
         samples.rays.t_max.fill(f32::INFINITY);
         samples.rays.origin.x.fill(self.eye.x);
         samples.rays.origin.y.fill(self.eye.y);

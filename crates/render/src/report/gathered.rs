@@ -25,7 +25,7 @@ pub(crate) struct Gathered {
 
 impl Nodes for Gathered {
     fn begin(&mut self, samples: usize) {
-        self.direct.clear();
+        // Direct light may be what it was: nothing is made of it before it is written.
         self.indirect.clear();
         self.gain.clear();
         self.parent.clear();
@@ -40,8 +40,8 @@ impl Gathered {
         self.gain.len()
     }
 
-    fn grow(&mut self, count: usize) {
-        let count = self.len() + count;
+    fn grow(&mut self, more: usize) {
+        let count = self.len() + more;
         self.direct.resize(count);
         self.indirect.resize(count);
         self.gain.resize(count, 0.0);

@@ -145,12 +145,12 @@ impl Report {
             Response::Matte(Coat::Phong { specular: Gloss::Color(specular), power, .. }) => Some((specular, power)),
             _ => None,
         };
-        direct.clear();
         direct.resize(padded(batch.len()));
-        if self.lights.is_empty() && lobe.is_none() {
-            (0..batch.len()).for_each(|i| direct.set(i, UNLIT * colors.get(i)));
+        if self.lights.is_empty() {
+            let unlit = if lobe.is_none() { UNLIT } else { 0.0 };
+            (0..batch.len()).for_each(|i| direct.set(i, unlit * colors.get(i)));
         }
-        for light in &self.lights {
+        for (number, light) in self.lights.iter().enumerate() {
             let points = LightPoints { position, normal, colors };
             simd::run(See { light, points, sight });
             if let Some(lobe) = lobe {
@@ -169,7 +169,7 @@ impl Report {
             queues.clock.lap(Stage::Shade);
             batch.geometry.occluded(rays, blocked, scratch);
             queues.clock.lap(Stage::Trace);
-            simd::run(Gather { light: &sight.light, blocked, direct });
+            simd::run(Gather { light: &sight.light, blocked, direct, first: number == 0 });
         }
         queues.nodes.note(batch.paths[0].node as usize, batch.runs, direct, Share::of(material).gain);
     }
@@ -260,6 +260,8 @@ struct Gather<'a> {
     light: &'a Rows,
     blocked: &'a [bool],
     direct: &'a mut Rows,
+    /// There is nothing yet to which it could be added.
+    first: bool,
 }
 
 impl simd::Kernel for Gather<'_> {
@@ -267,10 +269,12 @@ impl simd::Kernel for Gather<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self) {
-        let count = self.blocked.len();
-        for (row, light) in self.direct.slices_mut(count).into_iter().zip(self.light.slices(count)) {
-            for i in 0..count {
-                row[i] += if self.blocked[i] { 0.0 } else { light[i] };
+        let Gather { light, blocked, direct, first } = self;
+        let Rows { x, y, z } = direct;
+        for (row, light) in [(x, &light.x), (y, &light.y), (z, &light.z)] {
+            for ((sum, &light), &blocked) in row.iter_mut().zip(light).zip(blocked) {
+                let light = if blocked { 0.0 } else { light };
+                *sum = if first { light } else { *sum + light };
             }
         }
     }
