@@ -121,6 +121,32 @@ impl Field {
         }
     }
 
+    /// The values at many points in space as most programs hold them, x y z x y z …: the same bits as [`Field::value`] in single
+    /// precision.
+    ///
+    /// # Panics
+    /// When there is not a value for each point.
+    pub fn fill_points(&self, points: &[[f32; 3]], values: &mut [f32]) {
+        self.fill_points_at(simd::level(), points, values);
+    }
+
+    /// [`Field::fill_points`] with the instructions of a level, at most those of the machine. For tests and measurements.
+    ///
+    /// # Panics
+    /// When there is not a value for each point.
+    pub fn fill_points_at(&self, level: Level, points: &[[f32; 3]], values: &mut [f32]) {
+        assert_eq!(points.len(), values.len(), "there is a value for each point");
+        let done = match self {
+            Field::Noise(noise) => noise.fill_points_fast(level, points, values),
+            _ => 0,
+        };
+        let mut columns = [[0.0; 2 * CHUNK]; 3];
+        for (points, values) in points[done..].chunks(2 * CHUNK).zip(values[done..].chunks_mut(2 * CHUNK)) {
+            simd::deinterleave_at(level, points, columns.each_mut().map(|column| &mut column[..points.len()]));
+            self.fill_at(level, columns.each_ref().map(|column| &column[..points.len()]), values);
+        }
+    }
+
     /// The values at many points, and the exact derivatives along each axis: the same bits as
     /// [`Field::value_and_gradient`] in single precision.
     ///

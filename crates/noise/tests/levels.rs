@@ -1,7 +1,7 @@
 //! Every instruction set, every basis and sum, every length of a batch: the same bits.
 
 use jaspe_noise::simd::{Kernel, Level, deinterleave_at, map_at};
-use jaspe_noise::{Basis, Cellular, Combine, Feature, Integer, Metric, Noise, Real, Sum, math};
+use jaspe_noise::{Basis, Cellular, Combine, Feature, Field, Integer, Metric, Noise, Real, Sum, math};
 
 /// Points near and far, on lattice points and beside them, and no numbers at all.
 fn coordinates(count: usize, salt: u64) -> Vec<f32> {
@@ -241,6 +241,29 @@ fn points_are_taken_apart_at_every_level() {
             for (axis, column) in columns.iter().enumerate() {
                 let wrong = (0..count).find(|&i| column[i] != points[i][axis]);
                 assert_eq!(wrong, None, "{level:?}, axis {axis} of {count} points");
+            }
+        }
+    }
+}
+
+#[test]
+fn points_that_lie_one_after_the_other_have_the_same_values() {
+    let points: Vec<[f32; 3]> = (0..1000).map(|i| [0.37, -1.13, 0.71].map(|step| i as f32 * step - 99.0)).collect();
+    let columns: [Vec<f32>; 3] = std::array::from_fn(|axis| points.iter().map(|point| point[axis]).collect());
+    let improved = Noise::new(Basis::Improved, 3);
+    let fields = [
+        Field::from(improved.clone()),
+        Field::from(improved.clone().with_period([5, 0, 0]).expect("a short period")),
+        Field::from(Noise::new(Basis::Simplex, 0)),
+        Field::from(Sum::new(improved, Combine::Absolute, 3)),
+    ];
+    for field in &fields {
+        for level in Level::ALL {
+            for count in (0..140).chain([577, 1000]) {
+                let (mut values, mut expected) = (vec![-9.0; count], vec![9.0; count]);
+                field.fill_points_at(level, &points[..count], &mut values);
+                field.fill_at(level, columns.each_ref().map(|column| &column[..count]), &mut expected);
+                assert_eq!(values, expected, "{field:?} at {level:?}, {count} points");
             }
         }
     }

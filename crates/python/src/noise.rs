@@ -148,6 +148,8 @@ trait Number: Coordinate {
         values: &mut [Self],
         gradient: Option<[&mut [Self]; D]>,
     );
+    /// The values at points in space that lie one after the other.
+    fn fill_points(field: &Field, points: &[[Self; 3]], values: &mut [Self]);
 }
 
 impl Number for f32 {
@@ -156,6 +158,10 @@ impl Number for f32 {
             None => field.fill(points, values),
             Some(gradient) => field.fill_with_gradient(points, values, gradient),
         }
+    }
+
+    fn fill_points(field: &Field, points: &[[f32; 3]], values: &mut [f32]) {
+        field.fill_points(points, values);
     }
 }
 
@@ -172,6 +178,10 @@ impl Number for f64 {
                 }
             }
         }
+    }
+
+    fn fill_points(field: &Field, points: &[[f64; 3]], values: &mut [f64]) {
+        values.iter_mut().zip(points).for_each(|(value, &point)| *value = field.value(point));
     }
 }
 
@@ -195,6 +205,12 @@ fn evaluate<'py, T: Number, const D: usize>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = points.py();
     let values = points::results::<T>(py, points.shape(), &[])?;
+    let place = points.as_array();
+    if let (3, false, Some(numbers)) = (D, gradient, place.to_slice()) {
+        let fill = |points: &[[T; 3]], values: &mut [T]| T::fill_points(field, points, values);
+        points::evaluate_points(py, numbers.as_chunks().0, values.readwrite().as_slice_mut()?, fill)?;
+        return points::array_or_number(values);
+    }
     let slopes = if gradient { Some(points::results::<T>(py, points.shape(), &[D])?) } else { None };
     {
         let mut values = values.readwrite();

@@ -175,16 +175,8 @@ pub fn evaluate<T: Coordinate, U: Send, const D: usize>(
     work: impl Fn([&[T]; D], &mut [U], &mut [U]) + Sync,
 ) -> PyResult<()> {
     let rows = Rows::<T, D>::new(points);
-    let [mut values, mut more] =
-        [(values, widths[0]), (more, widths[1])].map(|(all, width)| all.chunks_mut((PIECE * width).max(1)));
-    let pieces = (0..rows.point_count).step_by(PIECE).map(|start| Piece {
-        start,
-        point_count: PIECE.min(rows.point_count - start),
-        values: values.next().unwrap_or_default(),
-        more: more.next().unwrap_or_default(),
-    });
     let chunk = if rows.dense.is_some() || widths[1] > 0 { CHUNK } else { LONG_CHUNK };
-    let evaluate = |piece: Piece<'_, U>| {
+    each_piece(py, rows.point_count, values, more, widths, |piece| {
         let mut room = [[T::default(); LONG_CHUNK]; D];
         let mut values = piece.values.chunks_mut(chunk * widths[0]);
         let mut more = piece.more.chunks_mut((chunk * widths[1]).max(1));
@@ -193,15 +185,46 @@ pub fn evaluate<T: Coordinate, U: Send, const D: usize>(
             let columns = rows.columns(points, &mut room);
             work(columns, values.next().unwrap_or_default(), more.next().unwrap_or_default());
         }
-    };
-    if rows.point_count <= PIECE {
+    })
+}
+
+/// [`evaluate`] for points that lie one after the other, by work that takes them as they are: one value for each.
+pub fn evaluate_points<T: Coordinate, const D: usize>(
+    py: Python<'_>,
+    points: &[[T; D]],
+    values: &mut [T],
+    work: impl Fn(&[[T; D]], &mut [T]) + Sync,
+) -> PyResult<()> {
+    each_piece(py, points.len(), values, &mut [], [1, 0], |piece| {
+        work(&points[piece.start..][..piece.point_count], piece.values);
+    })
+}
+
+/// Does pieces of so many points on all cores.
+fn each_piece<U: Send>(
+    py: Python<'_>,
+    point_count: usize,
+    values: &mut [U],
+    more: &mut [U],
+    widths: [usize; 2],
+    evaluate: impl Fn(Piece<'_, U>) + Sync,
+) -> PyResult<()> {
+    let [mut values, mut more] =
+        [(values, widths[0]), (more, widths[1])].map(|(all, width)| all.chunks_mut((PIECE * width).max(1)));
+    let pieces = (0..point_count).step_by(PIECE).map(|start| Piece {
+        start,
+        point_count: PIECE.min(point_count - start),
+        values: values.next().unwrap_or_default(),
+        more: more.next().unwrap_or_default(),
+    });
+    if point_count <= PIECE {
         pieces.for_each(evaluate);
         return Ok(());
     }
     let pool = work::pool()?;
     let pieces: Vec<Piece<'_, U>> = pieces.collect();
-    if rows.point_count <= SHORT {
-        py.detach(|| pool.install(|| pieces.into_par_iter().for_each(evaluate)));
+    if point_count <= SHORT {
+        py.detach(|| pool.install(|| pieces.into_par_iter().for_each(&evaluate)));
         return py.check_signals();
     }
     work::watched(py, |stopped| {

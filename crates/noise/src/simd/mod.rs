@@ -243,6 +243,19 @@ pub(crate) fn sum_improved<const N: usize>(
     }
 }
 
+/// Improved noise without a period at the first points in space, which are not in columns, by a kernel made by hand; returns how
+/// many it did, perhaps none. Same bits as the generic evaluation.
+pub(crate) fn improved_at_points(level: Level, tables: &Tables, points: &[[f32; 3]], values: &mut [f32]) -> usize {
+    match level.min(machine_level()) {
+        // SAFETY, for both: the machine has the instructions, `machine_level` says.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 => unsafe { avx2::improved::at_points(tables, points, values) },
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => unsafe { avx512::improved::at_points(tables, points, values) },
+        _ => 0,
+    }
+}
+
 /// Improved noise at one point, by the instructions of a level: the same bits as the generic evaluation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AtPoint {

@@ -69,6 +69,8 @@ pub(super) trait Halves<const STEP: usize> {
         sums: Sums<STEP, N>,
         codes: &Self::Codes,
     );
+    /// Takes the points of a step apart into their coordinates.
+    fn take_apart(points: &[[f32; 3]; STEP], coordinates: &mut [[f32; STEP]; 3]);
 }
 
 /// The sums at the first points, a multiple of `STEP` of them; returns how many.
@@ -114,6 +116,45 @@ fn alone<H: Halves<STEP>, const STEP: usize, const N: usize>(
     halves.finish::<ALONE, N>(&octave, point(last), sums(outputs, last), &codes);
 }
 
+/// The noise itself at points that are not in columns yet, a multiple of `STEP` of them; returns how many. They are taken apart
+/// step by step, so that their way from memory is hidden behind the noise.
+#[inline(always)]
+pub(super) fn at_points<H: Halves<STEP>, const STEP: usize>(
+    halves: &H,
+    points: &[[f32; 3]],
+    values: &mut [f32],
+) -> usize {
+    let (points, outputs) = (points.as_chunks::<STEP>().0, values.as_chunks_mut::<STEP>().0);
+    assert_eq!(points.len(), outputs.len());
+    let Some(last) = points.len().checked_sub(1) else { return 0 };
+    let octave = Octave { frequency: 1.0, amplitude: 1.0, slope: 1.0 };
+    // Those of this step, and those of the next one.
+    let mut rooms = [Room([[0.0; STEP]; 3]), Room([[0.0; STEP]; 3])];
+    H::take_apart(&points[0], &mut rooms[0].0);
+    let mut codes = halves.hash::<1>(1.0, rooms[0].point());
+    for i in 0..last {
+        prefetch([points], i + AHEAD / STEP);
+        let next = (i + 1) % 2;
+        H::take_apart(&points[i + 1], &mut rooms[next].0);
+        let (point, next) = (rooms[i % 2].point(), rooms[next].point());
+        halves.step::<ALONE, 1>(&octave, point, [&mut outputs[i]], &mut codes, (1.0, next));
+    }
+    halves.finish::<ALONE, 1>(&octave, rooms[last % 2].point(), [&mut outputs[last]], &codes);
+    points.len() * STEP
+}
+
+/// The coordinates of a step. (Aligned, or vectors may straddle cache lines.)
+#[repr(align(64))]
+struct Room<const STEP: usize>([[f32; STEP]; 3]);
+
+impl<const STEP: usize> Room<STEP> {
+    #[inline(always)]
+    fn point(&self) -> Point<'_, STEP> {
+        let [x, y, z] = &self.0;
+        [x, y, z]
+    }
+}
+
 /// The sum of octaves.
 #[inline(always)]
 fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
@@ -154,12 +195,12 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
     }
 }
 
-/// Calls for the coordinates of a step from memory. (There need not be such a step: the machine passes over bad addresses.)
+/// Calls for the numbers of a step from memory. (There need not be such a step: the machine passes over bad addresses.)
 #[inline(always)]
-fn prefetch<const STEP: usize>(points: [&[[f32; STEP]]; 3], step: usize) {
-    for axis in points {
-        let numbers = axis.as_ptr().wrapping_add(step).cast::<i8>();
-        for line in 0..size_of::<[f32; STEP]>() / 64 {
+fn prefetch<T, const N: usize>(slices: [&[T]; N], step: usize) {
+    for slice in slices {
+        let numbers = slice.as_ptr().wrapping_add(step).cast::<i8>();
+        for line in 0..size_of::<T>() / 64 {
             // SAFETY: nothing is read.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(numbers.wrapping_add(64 * line)) };
         }

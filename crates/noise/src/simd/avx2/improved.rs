@@ -12,7 +12,7 @@ use crate::basis::Tables;
 use crate::basis::corners::{Corners, Curve};
 use crate::number::{Dual, Integer, Real};
 use crate::simd::pipeline::{self, ABSOLUTE, ALONE, Halves, Octave, PLAIN, Point, Sums};
-use crate::simd::{Terms, Vector};
+use crate::simd::{Terms, Vector, triples};
 use crate::table::CornerTables;
 
 /// Points in a vector.
@@ -53,6 +53,12 @@ pub(in crate::simd) fn sum<const N: usize>(
         }
     }
     count / LANES * LANES
+}
+
+/// The noise at the first points, which are not in columns, a multiple of 32 of them; returns how many.
+#[target_feature(enable = "avx2,fma")]
+pub(in crate::simd) fn at_points(tables: &Tables, points: &[[f32; 3]], values: &mut [f32]) -> usize {
+    pipeline::at_points(&Staged(&tables.corners), points, values)
 }
 
 /// Numbers of the points of a step. (Aligned, or vectors may straddle cache lines.)
@@ -121,6 +127,15 @@ impl Halves<STEP> for Staged<'_> {
             pipeline::add::<F32x8, STEP, LANES, N, USE>(octave, Dual { value, gradient: [value; 3] }, &mut sums, i);
         }
         codes.current = 1 - codes.current;
+    }
+
+    #[inline(always)]
+    fn take_apart(points: &[[f32; 3]; STEP], [x, y, z]: &mut [[f32; STEP]; 3]) {
+        let numbers = points.as_flattened().as_chunks().0.as_chunks().0;
+        let (x, y, z) = (x.as_chunks_mut().0, y.as_chunks_mut().0, z.as_chunks_mut().0);
+        for group in 0..STEP / 8 {
+            triples::eight(&numbers[group], [&mut x[group], &mut y[group], &mut z[group]]);
+        }
     }
 
     #[inline(always)]

@@ -12,7 +12,7 @@ use crate::basis::corners::{Corners, Curve};
 use crate::basis::improved::blend_dots;
 use crate::number::{Integer, Real};
 use crate::simd::pipeline::{self, ALONE, Halves, Octave, PLAIN, Point, Sums};
-use crate::simd::{Terms, Vector};
+use crate::simd::{Terms, Vector, triples};
 
 /// Points that take part in one step.
 const STEP: usize = 64;
@@ -27,6 +27,12 @@ pub(in crate::simd) fn sum<const N: usize>(
 ) -> usize {
     let whole = outputs[0].len() / STEP * STEP;
     pipeline::sum(&InRegisters(tables), terms, [&x[..whole], &y[..whole], &z[..whole]], outputs)
+}
+
+/// The noise at the first points, which are not in columns, a multiple of 64 of them; returns how many.
+#[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
+pub(in crate::simd) fn at_points(tables: &Tables, points: &[[f32; 3]], values: &mut [f32]) -> usize {
+    pipeline::at_points(&InRegisters(tables), points, values)
 }
 
 /// The kernel whose codes stay in registers. It exists only where the machine has the instructions.
@@ -53,6 +59,15 @@ impl Halves<STEP> for InRegisters<'_> {
         let next = unsafe { hash::<USE>(self.0, frequency, next) };
         add_step::<USE, N>(codes, octave, point, sums);
         *codes = next;
+    }
+
+    #[inline(always)]
+    fn take_apart(points: &[[f32; 3]; STEP], [x, y, z]: &mut [[f32; STEP]; 3]) {
+        let numbers = points.as_flattened().as_chunks().0.as_chunks().0;
+        let (x, y, z) = (x.as_chunks_mut().0, y.as_chunks_mut().0, z.as_chunks_mut().0);
+        for group in 0..STEP / 16 {
+            triples::sixteen(&numbers[group], [&mut x[group], &mut y[group], &mut z[group]]);
+        }
     }
 
     #[inline(always)]
