@@ -172,7 +172,15 @@ impl Noise {
             }
             return;
         }
-        Octave { noise: self, frequency: 1.0 }.fill(level, &points, values, &mut []);
+        // (What most callers want, at once: of short slices the way here would be a tenth.)
+        let done = match &points[..] {
+            [x, y, z] if self.has_kernel => simd::sum_improved(level, &self.tables, None, [x, y, z], [&mut *values]),
+            _ => 0,
+        };
+        if done < values.len() {
+            let rest = points.map(|axis| &axis[done..]);
+            Octave { noise: self, frequency: 1.0 }.fill(level, &rest, &mut values[done..], &mut []);
+        }
     }
 
     /// The values at the first points, x y z x y z …, by a kernel made by hand, if there is one for this noise; returns how many.
@@ -232,11 +240,11 @@ impl Noise {
         }
     }
 
-    /// The sums at the first points by a kernel made by hand, if there is one for this noise; returns how many.
+    /// The sums (without terms: the noise itself) at the first points by a kernel made by hand, if there is one for this noise; returns how many.
     pub(crate) fn sum_fast<const N: usize>(
         &self,
         level: Level,
-        terms: &Terms,
+        terms: Option<&Terms>,
         points: &[&[f32]],
         outputs: [&mut [f32]; N],
     ) -> usize {
@@ -252,7 +260,7 @@ impl Noise {
             [x, y, z] if self.basis == Basis::Simplex && self.period == [0.0; 4] => {
                 simplex::fill(level, &self.tables, [x, y, z], outputs)
             }
-            _ => self.sum_fast(level, &Terms::ONE, points, outputs),
+            _ => self.sum_fast(level, None, points, outputs),
         }
     }
 

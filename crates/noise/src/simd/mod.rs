@@ -208,12 +208,6 @@ impl Terms<'_> {
     /// The noise alone.
     pub const ONE: Terms<'static> = Terms { absolute: false, frequencies: &[1.0], amplitudes: &[1.0], slopes: &[1.0] };
 
-    /// Whether they are those of [`Terms::ONE`].
-    #[inline(always)]
-    pub fn are_one(&self) -> bool {
-        !self.absolute && *self.frequencies == [1.0] && *self.amplitudes == [1.0]
-    }
-
     /// How many octaves.
     #[inline(always)]
     pub fn octaves(&self) -> usize {
@@ -221,12 +215,12 @@ impl Terms<'_> {
     }
 }
 
-/// The sum of improved noise without a period at the first points in space (and its gradient, where there are four
+/// The sum of improved noise (without terms: the noise itself) without a period at the first points in space (and its gradient, where there are four
 /// outputs), by a kernel made by hand; returns how many points it did, perhaps none. Same bits as the generic evaluation.
 pub(crate) fn sum_improved<const N: usize>(
     level: Level,
     tables: &Tables,
-    terms: &Terms,
+    terms: Option<&Terms>,
     points: [&[f32]; 3],
     outputs: [&mut [f32]; N],
 ) -> usize {

@@ -73,11 +73,11 @@ pub(super) trait Halves<const STEP: usize> {
     fn take_apart(points: &[[f32; 3]; STEP], coordinates: &mut [[f32; STEP]; 3]);
 }
 
-/// The sums at the first points, a multiple of `STEP` of them; returns how many.
+/// The sums at the first points (without terms: the noise itself), a multiple of `STEP` of them; returns how many.
 #[inline(always)]
 pub(super) fn sum<H: Halves<STEP>, const STEP: usize, const N: usize>(
     halves: &H,
-    terms: &Terms,
+    terms: Option<&Terms>,
     points: [&[f32]; 3],
     mut outputs: [&mut [f32]; N],
 ) -> usize {
@@ -87,10 +87,10 @@ pub(super) fn sum<H: Halves<STEP>, const STEP: usize, const N: usize>(
     if steps == 0 {
         return 0;
     }
-    match (terms.are_one(), terms.absolute) {
-        (true, _) => alone(halves, points, &mut outputs),
-        (false, false) => octaves::<PLAIN, H, STEP, N>(halves, terms, points, &mut outputs),
-        (false, true) => octaves::<ABSOLUTE, H, STEP, N>(halves, terms, points, &mut outputs),
+    match terms {
+        None => alone(halves, points, &mut outputs),
+        Some(terms) if terms.absolute => octaves::<ABSOLUTE, H, STEP, N>(halves, terms, points, &mut outputs),
+        Some(terms) => octaves::<PLAIN, H, STEP, N>(halves, terms, points, &mut outputs),
     }
     steps * STEP
 }

@@ -233,7 +233,7 @@ impl Sum {
         let mut done = 0;
         if self.combine.is_plain() {
             if values.len() > FEW {
-                done = self.noise.sum_fast(level, &self.terms(), &points, [&mut *values]);
+                done = self.noise.sum_fast(level, Some(&self.terms()), &points, [&mut *values]);
             }
             if done == values.len() {
                 return;
@@ -286,7 +286,7 @@ impl Sum {
         simd::assert_lengths(&gradient, values.len());
         let mut done = 0;
         if let (true, [x, y, z]) = (self.combine.is_plain(), &mut gradient[..]) {
-            done = self.noise.sum_fast(level, &self.terms(), &points, [&mut *values, x, y, z]);
+            done = self.noise.sum_fast(level, Some(&self.terms()), &points, [&mut *values, x, y, z]);
         }
         let points = points.map(|coordinates| &coordinates[done..]);
         let mut gradient = gradient.map(|part| &mut part[done..]);

@@ -22,11 +22,11 @@ const LANES: usize = 8;
 const STEP: usize = 32;
 const VECTORS: usize = STEP / LANES;
 
-/// The sums (and gradients) at the first points, a multiple of 8 of them; returns how many.
+/// The sums (and gradients) at the first points (without terms: the noise itself), a multiple of 8 of them; returns how many.
 #[target_feature(enable = "avx2,fma")]
 pub(in crate::simd) fn sum<const N: usize>(
     tables: &Tables,
-    terms: &Terms,
+    terms: Option<&Terms>,
     points: [&[f32]; 3],
     mut outputs: [&mut [f32]; N],
 ) -> usize {
@@ -38,6 +38,7 @@ pub(in crate::simd) fn sum<const N: usize>(
         let point = points.map(|axis| axis[start..].first_chunk().expect("a whole vector"));
         let mut sums = outputs.each_mut().map(|output| output[start..].first_chunk_mut().expect("a whole vector"));
         sums.iter_mut().for_each(|sums| sums.fill(0.0));
+        let terms = terms.unwrap_or(&Terms::ONE);
         for index in 0..terms.octaves() {
             let octave = Octave::of(terms, index);
             let (mut cells, mut codes) = ([Stage::EMPTY; 3], Stage::EMPTY);

@@ -17,11 +17,11 @@ use crate::simd::{Terms, Vector, triples};
 /// Points that take part in one step.
 const STEP: usize = 64;
 
-/// The sums (and gradients) at the first points, a multiple of 64 of them; returns how many.
+/// The sums (and gradients) at the first points (without terms: the noise itself), a multiple of 64 of them; returns how many.
 #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
 pub(in crate::simd) fn sum<const N: usize>(
     tables: &Tables,
-    terms: &Terms,
+    terms: Option<&Terms>,
     [x, y, z]: [&[f32]; 3],
     outputs: [&mut [f32]; N],
 ) -> usize {
