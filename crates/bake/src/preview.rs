@@ -131,10 +131,10 @@ fn by_day(roughness: f64) -> String {
     } else {
         // GGX's α is the square of the roughness, and Ward's width is close to it.
         let spread = (roughness * roughness).clamp(0.05, 0.6);
-        format!("ward texture color.png spec 0.04 0.04 0.04 rough {spread} {spread} samples 1")
+        format!("ward texture color.png spec 0.04 0.04 0.04 rough {spread} {spread} samples 4")
     };
     format!(
-        "light {{ type sunsky up 0 0 1 east 0 1 0 sundir -0.65 -0.7 0.85 turbidity 3 samples 10 }}\n\
+        "light {{ type sunsky up 0 0 1 east 0 1 0 sundir -0.65 -0.7 0.85 turbidity 3 samples 20 }}\n\
          shader {{ name material type {shader} }}\n"
     )
 }
