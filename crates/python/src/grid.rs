@@ -81,14 +81,7 @@ impl Grid {
         dtype: Option<&Bound<'py, PyAny>>,
         copy: Option<bool>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if copy == Some(false) {
-            return Err(PyValueError::new_err("a grid has no array of points to share: leave out copy=False"));
-        }
-        let points = self.points(py)?;
-        match dtype {
-            None => Ok(points),
-            Some(dtype) => points.call_method1(intern!(py, "astype"), (dtype,)),
-        }
+        points::copied("a grid", dtype, copy, || self.points(py))
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {

@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::error::{os_error, value_error};
+use crate::points;
 
 /// A picture: linear light, as it was rendered, which is encoded for the display when it is shown, saved or converted to bytes.
 ///
@@ -145,14 +146,7 @@ impl Image {
         dtype: Option<&Bound<'py, PyAny>>,
         copy: Option<bool>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        if copy == Some(false) {
-            return Err(value_error("an image cannot be seen as an array without a copy; leave `copy` out"));
-        }
-        let bytes = self.display(py, 8)?;
-        match dtype {
-            None => Ok(bytes),
-            Some(dtype) => bytes.call_method1("astype", (dtype,)),
-        }
+        points::copied("an image", dtype, copy, || self.display(py, 8))
     }
 
     /// Writes the picture; the extension chooses the format: .png, .jpg, .tiff and .bmp are encoded for the display, .exr and

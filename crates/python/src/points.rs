@@ -121,6 +121,24 @@ pub fn array<'py, T: Element>(py: Python<'py>, shape: &[usize]) -> PyResult<Boun
     Ok(array.cast_into()?)
 }
 
+/// What `__array__` returns: a new array, of the dtype that is asked for.
+pub fn copied<'py>(
+    what: &str,
+    dtype: Option<&Bound<'py, PyAny>>,
+    copy: Option<bool>,
+    make: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    if copy == Some(false) {
+        let message = format!("{what} cannot be seen as an array without a copy; leave `copy` out");
+        return Err(PyValueError::new_err(message));
+    }
+    let array = make()?;
+    match dtype {
+        None => Ok(array),
+        Some(dtype) => array.call_method1(intern!(array.py(), "astype"), (dtype,)),
+    }
+}
+
 /// The array, or the number if it has no axes.
 pub fn array_or_number<'py, T: Element>(array: Bound<'py, PyArrayDyn<T>>) -> PyResult<Bound<'py, PyAny>> {
     if array.ndim() == 0 { array.get_item(()) } else { Ok(array.into_any()) }
