@@ -29,7 +29,11 @@ impl Sum {
     }
 
     pub fn mean(&self) -> Pixel {
-        if self.count > 0.0 { self.color.map(|sum| sum / self.count) } else { [0.0; 4] }
+        match self.count {
+            0.0 => [0.0; 4],
+            1.0 => self.color,
+            count => self.color.map(|sum| sum / count),
+        }
     }
 }
 

@@ -96,12 +96,24 @@ impl simd::Kernel for Aim<'_> {
         let count = rows.x.len();
         bits.resize(count, 0);
         let mut cells = Cells::new(grid, shots, 0);
-        for (number, &pixel) in shots.pixels.iter().enumerate() {
-            for first in (0..each).step_by(CHUNK) {
-                if each > CHUNK {
-                    cells = Cells::new(grid, shots, first);
+        for (chunk, pixels) in shots.pixels.chunks(CHUNK).enumerate() {
+            let (mut corner, mut hash) = ([[0.0; CHUNK]; 2], [0; CHUNK]);
+            for (i, &[x, y]) in pixels.iter().enumerate() {
+                (corner[0][i], corner[1][i]) = (x as f32, y as f32);
+                hash[i] = SampleKey::new(x, y, 0, seed).pixel;
+            }
+            let start = chunk * CHUNK * each;
+            if each == 1 {
+                cells.write_one([&corner[0], &corner[1]], &hash, start, pixels.len(), rows, bits);
+                continue;
+            }
+            for i in 0..pixels.len() {
+                for first in (0..each).step_by(CHUNK) {
+                    if each > CHUNK {
+                        cells = Cells::new(grid, shots, first);
+                    }
+                    cells.write([corner[0][i], corner[1][i]], hash[i], start + i * each + first, rows, bits);
                 }
-                cells.write(pixel, seed, number * each + first, rows, bits);
             }
         }
         let half = S::Wide::splat(0.5);
@@ -154,16 +166,32 @@ impl Cells {
         cells
     }
 
-    /// Writes the corners of the samples' cells, from sample `start` on, and the bits that make their jitter. Some are
+    /// Writes the corners of a pixel's cells, from sample `start` on, and the bits that make their jitter. Some are
     /// written at a time, though pixels have fewer: the next pixel writes over what is too much.
     #[inline(always)]
-    fn write(&self, [x, y]: [u32; 2], seed: u64, start: usize, rows: &mut Rows, bits: &mut [u32]) {
-        let key = SampleKey::new(x, y, 0, seed);
+    fn write(&self, [x, y]: [f32; 2], hash: u32, start: usize, rows: &mut Rows, bits: &mut [u32]) {
         for i in (0..self.size).step_by(STEP) {
-            overwrite(&mut rows.x[start + i..], std::array::from_fn(|k| x as f32 + self.offset[0][i + k]));
-            overwrite(&mut rows.y[start + i..], std::array::from_fn(|k| y as f32 + self.offset[1][i + k]));
-            overwrite(&mut bits[start + i..], std::array::from_fn(|k| key.pixel ^ self.hash[i + k]));
+            overwrite(&mut rows.x[start + i..], std::array::from_fn(|k| x + self.offset[0][i + k]));
+            overwrite(&mut rows.y[start + i..], std::array::from_fn(|k| y + self.offset[1][i + k]));
+            overwrite(&mut bits[start + i..], std::array::from_fn(|k| hash ^ self.hash[i + k]));
         }
+    }
+
+    /// The same for `count` pixels that have one sample each.
+    #[inline(always)]
+    fn write_one(
+        &self,
+        [x, y]: [&[f32; CHUNK]; 2],
+        hash: &[u32; CHUNK],
+        start: usize,
+        count: usize,
+        rows: &mut Rows,
+        bits: &mut [u32],
+    ) {
+        let ([across, down], own) = (self.offset, self.hash[0]);
+        rows.x[start..][..count].iter_mut().zip(x).for_each(|(to, x)| *to = x + across[0]);
+        rows.y[start..][..count].iter_mut().zip(y).for_each(|(to, y)| *to = y + down[0]);
+        bits[start..][..count].iter_mut().zip(hash).for_each(|(to, hash)| *to = hash ^ own);
     }
 }
 
