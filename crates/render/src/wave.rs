@@ -468,9 +468,9 @@ impl<R: Rules> Workspace<R> {
             if runs.is_empty() {
                 continue;
             }
-            met.gather(rays, hits, runs);
             members.clear();
             runs.iter().for_each(|run| members.extend(run.first..run.first + run.count));
+            met.gather(rays, hits, runs, members);
             rules.shade(
                 &Batch { geometry: &world.geometry, material, met, runs, members, paths, keys, of },
                 room,

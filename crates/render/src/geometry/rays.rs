@@ -184,10 +184,6 @@ impl Rays {
 
     /// Makes these rays some of others, in an order.
     pub fn gather(&mut self, others: &Rays, order: &[u32]) {
-        fn pick<T: Copy>(to: &mut Vec<T>, from: &[T], order: &[u32]) {
-            to.clear();
-            to.extend(order.iter().map(|&i| from[i as usize]));
-        }
         let Rays { origin, direction, t_max, skip, time } = self;
         for (to, from) in [(origin, &others.origin), (direction, &others.direction)] {
             pick(&mut to.x, &from.x, order);
@@ -213,6 +209,12 @@ impl Rays {
         let Rays { origin, direction, t_max, skip, time } = self;
         RayView { origin, direction, t_max, skip, t_min, time }
     }
+}
+
+/// Some of a row's numbers, in an order.
+fn pick<T: Copy>(to: &mut Vec<T>, from: &[T], order: &[u32]) {
+    to.clear();
+    to.extend(order.iter().map(|&i| from[i as usize]));
 }
 
 /// Rays whose rows may come from different places.
@@ -339,9 +341,31 @@ pub(crate) struct Met {
 }
 
 impl Met {
-    /// Takes the rays of some runs.
-    pub fn gather(&mut self, rays: &Rays, hits: &Hits, runs: &[Run]) {
-        simd::run(Gather { met: self, rays, hits, runs });
+    /// Takes the rays of some runs, whose positions are `members`.
+    pub fn gather(&mut self, rays: &Rays, hits: &Hits, runs: &[Run], members: &[u32]) {
+        // Short runs are quicker taken one by one.
+        const SHORT: usize = 4;
+        if members.len() >= runs.len() * SHORT {
+            simd::run(Gather { met: self, rays, hits, runs, count: members.len() });
+            return;
+        }
+        let Met { origin, direction, hits: to } = self;
+        let take = |to: &mut Vec<f32>, from: &[f32]| {
+            pick(to, from, members);
+            to.resize(padded(members.len()), 0.0);
+        };
+        for (to, from) in [(origin, &rays.origin), (direction, &rays.direction)] {
+            take(&mut to.x, &from.x);
+            take(&mut to.y, &from.y);
+            take(&mut to.z, &from.z);
+        }
+        take(&mut to.t, &hits.t);
+        take(&mut to.u, &hits.u);
+        take(&mut to.v, &hits.v);
+        pick(&mut to.id.object, &hits.id.object, members);
+        pick(&mut to.id.index, &hits.id.index, members);
+        to.id.resize(padded(members.len()));
+        pick(&mut to.time, &hits.time, if hits.time.is_empty() { &[] } else { members });
     }
 
     /// A ray, as far as it matters when it has arrived.
@@ -359,6 +383,7 @@ struct Gather<'a> {
     rays: &'a Rays,
     hits: &'a Hits,
     runs: &'a [Run],
+    count: usize,
 }
 
 impl simd::Kernel for Gather<'_> {
@@ -366,8 +391,7 @@ impl simd::Kernel for Gather<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self) {
-        let Gather { met: Met { origin, direction, hits: to }, rays, hits: from, runs } = self;
-        let count = runs.iter().map(|run| run.count as usize).sum();
+        let Gather { met: Met { origin, direction, hits: to }, rays, hits: from, runs, count } = self;
         take(&mut origin.x, &rays.origin.x, runs, count);
         take(&mut origin.y, &rays.origin.y, runs, count);
         take(&mut origin.z, &rays.origin.z, runs, count);
