@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::bvh::{Child, Kind};
 use super::packet::Packet;
 use super::rays::{Hits, RayView, group, group_bits};
-use super::simd::{Lanes, Simd, Vec3s};
+use super::simd::{Kernel, Lanes, Simd, Vec3s};
 use super::traverse::{SphereBlock, Tree};
 use super::{Id, PlaneShape};
 
@@ -34,40 +34,6 @@ impl<'a> Few<'a> {
         }
     }
 
-    /// The first hit of every ray.
-    #[inline(always)]
-    pub fn closest<S: Simd>(&self, rays: RayView<'_>, hits: &mut Hits) {
-        for first in (0..rays.len()).step_by(GROUP) {
-            let (end, slots) = self.look::<S>(rays, first);
-            for start in (first..end).step_by(S::Wide::COUNT) {
-                let mut packet = Packet::<S::Wide>::new(rays, start, false);
-                self.meet(&mut packet, slots);
-                packet.store(hits);
-            }
-        }
-    }
-
-    /// Whether anything is in the way of every ray.
-    #[inline(always)]
-    pub fn occluded<S: Simd>(&self, rays: RayView<'_>, blocked: &mut [bool]) {
-        for first in (0..rays.len()).step_by(GROUP) {
-            let (end, slots) = self.look::<S>(rays, first);
-            if slots == 0 && self.planes.is_empty() {
-                for (blocked, &t_max) in blocked[first..end].iter_mut().zip(&rays.t_max[first..end]) {
-                    *blocked = t_max < 0.0 || t_max.is_nan();
-                }
-                continue;
-            }
-            for start in (first..end).step_by(S::Wide::COUNT) {
-                let mut packet = Packet::<S::Wide>::new(rays, start, true);
-                if !packet.is_dead() {
-                    self.meet(&mut packet, slots);
-                }
-                packet.store_blocked(blocked);
-            }
-        }
-    }
-
     /// Where the group from ray `first` on ends, and which spheres it may meet.
     #[inline(always)]
     fn look<S: Simd>(&self, rays: RayView<'_>, first: usize) -> (usize, u32) {
@@ -84,6 +50,62 @@ impl<'a> Few<'a> {
         packet.planes(self.planes);
         if let Some(block) = self.spheres {
             packet.spheres(block, slots, u32::MAX, L::splat(0.0));
+        }
+    }
+}
+
+/// The first hit of every ray, as a kernel.
+pub(super) struct Closest<'a> {
+    pub few: Few<'a>,
+    pub rays: RayView<'a>,
+    pub hits: &'a mut Hits,
+}
+
+impl Kernel for Closest<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Closest { few, rays, hits } = self;
+        for first in (0..rays.len()).step_by(GROUP) {
+            let (end, slots) = few.look::<S>(rays, first);
+            for start in (first..end).step_by(S::Wide::COUNT) {
+                let mut packet = Packet::<S::Wide>::new(rays, start, false);
+                few.meet(&mut packet, slots);
+                packet.store(hits);
+            }
+        }
+    }
+}
+
+/// Whether anything is in the way of every ray, as a kernel.
+pub(super) struct Occluded<'a> {
+    pub few: Few<'a>,
+    pub rays: RayView<'a>,
+    pub blocked: &'a mut [bool],
+}
+
+impl Kernel for Occluded<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Occluded { few, rays, blocked } = self;
+        for first in (0..rays.len()).step_by(GROUP) {
+            let (end, slots) = few.look::<S>(rays, first);
+            if slots == 0 && few.planes.is_empty() {
+                for (blocked, &t_max) in blocked[first..end].iter_mut().zip(&rays.t_max[first..end]) {
+                    *blocked = t_max < 0.0 || t_max.is_nan();
+                }
+                continue;
+            }
+            for start in (first..end).step_by(S::Wide::COUNT) {
+                let mut packet = Packet::<S::Wide>::new(rays, start, true);
+                if !packet.is_dead() {
+                    few.meet(&mut packet, slots);
+                }
+                packet.store_blocked(blocked);
+            }
         }
     }
 }

@@ -21,6 +21,7 @@ mod traverse;
 mod tests;
 
 use glam::{Vec2, Vec3, Vec4};
+use jaspe_noise::simd::Level;
 
 use crate::affine::{self, Affine};
 use crate::motion::Motion;
@@ -268,17 +269,31 @@ impl Geometry {
         hits.resize(rays.len());
         hits.time.clear();
         hits.time.extend_from_slice(rays.time);
-        simd::run(Closest { geometry: self, rays, hits, scratch });
+        self.closest_at(simd::level(), rays, hits, scratch);
     }
 
     /// For every shadow ray, whether something lies before its end; a ray that ends before it begins counts as blocked.
     pub fn occluded(&self, rays: RayView<'_>, blocked: &mut Vec<bool>, scratch: &mut Scratch) {
         blocked.resize(rays.len(), false);
-        simd::run(Occluded { geometry: self, rays, blocked, scratch });
+        self.occluded_at(simd::level(), rays, blocked, scratch);
+    }
+
+    fn closest_at(&self, level: Level, rays: RayView<'_>, hits: &mut Hits, scratch: &mut Scratch) {
+        match Few::of(&self.tree, &self.planes) {
+            Some(few) => simd::run_at(level, few::Closest { few, rays, hits }),
+            None => simd::run_at(level, Closest { geometry: self, rays, hits, scratch }),
+        }
+    }
+
+    fn occluded_at(&self, level: Level, rays: RayView<'_>, blocked: &mut [bool], scratch: &mut Scratch) {
+        match Few::of(&self.tree, &self.planes) {
+            Some(few) => simd::run_at(level, few::Occluded { few, rays, blocked }),
+            None => simd::run_at(level, Occluded { geometry: self, rays, blocked, scratch }),
+        }
     }
 }
 
-/// [`Geometry::closest`] as a kernel.
+/// [`Geometry::closest`] by the tree, as a kernel.
 struct Closest<'a> {
     geometry: &'a Geometry,
     rays: RayView<'a>,
@@ -292,9 +307,6 @@ impl simd::Kernel for Closest<'_> {
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Closest { geometry, rays, hits, scratch } = self;
-        if let Some(few) = Few::of(&geometry.tree, &geometry.planes) {
-            return few.closest::<S>(rays, hits);
-        }
         let Scratch { packet: stack, flights, inner, scattered } = scratch;
         scattered.clear();
         for start in (0..rays.len()).step_by(S::Wide::COUNT) {
@@ -311,7 +323,7 @@ impl simd::Kernel for Closest<'_> {
     }
 }
 
-/// [`Geometry::occluded`] as a kernel.
+/// [`Geometry::occluded`] by the tree, as a kernel.
 struct Occluded<'a> {
     geometry: &'a Geometry,
     rays: RayView<'a>,
@@ -325,9 +337,6 @@ impl simd::Kernel for Occluded<'_> {
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Occluded { geometry, rays, blocked, scratch } = self;
-        if let Some(few) = Few::of(&geometry.tree, &geometry.planes) {
-            return few.occluded::<S>(rays, blocked);
-        }
         let Scratch { packet: stack, flights, inner, scattered } = scratch;
         scattered.clear();
         for start in (0..rays.len()).step_by(S::Wide::COUNT) {

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3, Vec3};
 
 use super::bvh::{Child, Kind};
 use super::kernel::{Plain, Shear, dominant, sphere, triangle, turned};
-use super::simd::{Kernel, Lanes, Portable, Simd, Vec3s};
+use super::simd::{Lanes, Portable, Simd, Vec3s};
 use super::traverse::{Course, Flight, Nested};
 use super::*;
 use crate::sampler::hash;
@@ -182,15 +182,15 @@ fn check(name: &str, geometry: &Geometry, rays: &[Ray]) {
     let mut found = Hits::default();
     found.resize(rays.len());
     let mut blocked = vec![false; rays.len()];
-    Closest { geometry, rays: view, hits: &mut found, scratch: &mut scratch }.run::<Portable>();
-    Occluded { geometry, rays: view, blocked: &mut blocked, scratch: &mut scratch }.run::<Portable>();
+    geometry.closest_at(Level::Scalar, view, &mut found, &mut scratch);
+    geometry.occluded_at(Level::Scalar, view, &mut blocked, &mut scratch);
     let each = |hits: &Hits| -> Vec<Hit> { (0..rays.len()).map(|i| hits.get(i)).collect() };
     let hits = each(&found);
     for level in simd::levels() {
         let (mut wide_found, mut wide_blocked) = (Hits::default(), vec![false; rays.len()]);
         wide_found.resize(rays.len());
-        simd::run_at(level, Closest { geometry, rays: view, hits: &mut wide_found, scratch: &mut scratch });
-        simd::run_at(level, Occluded { geometry, rays: view, blocked: &mut wide_blocked, scratch: &mut scratch });
+        geometry.closest_at(level, view, &mut wide_found, &mut scratch);
+        geometry.occluded_at(level, view, &mut wide_blocked, &mut scratch);
         assert_eq!(blocked, wide_blocked, "{name}: shadows of {level:?} and arrays");
         for (i, (hit, wide)) in hits.iter().zip(each(&wide_found)).enumerate() {
             assert_eq!(bits(hit), bits(&wide), "{name}: ray {i} of {level:?} and arrays");

@@ -120,13 +120,13 @@ pub(super) fn levels() -> impl Iterator<Item = Level> {
 
 /// What the kernels may use: the processor has it with all that comes with it, and `JASPE_SIMD` does not forbid it.
 #[cfg(not(target_arch = "x86_64"))]
-fn level() -> Level {
+pub(super) fn level() -> Level {
     Level::Scalar
 }
 
 /// What the kernels may use: the processor has it with all that comes with it, and `JASPE_SIMD` does not forbid it.
 #[cfg(target_arch = "x86_64")]
-fn level() -> Level {
+pub(super) fn level() -> Level {
     use std::sync::OnceLock;
     static LEVEL: OnceLock<Level> = OnceLock::new();
     *LEVEL.get_or_init(|| {
