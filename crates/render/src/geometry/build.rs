@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::bvh::{Aabb, Child, Kind, Node};
 use super::collapse::{Binary, Content, collapse};
+use super::pages;
 
 /// Most bins per axis. Small ranges have fewer, since looking at the bins would take longer than filling them.
 const BINS: usize = 32;
@@ -324,6 +325,7 @@ pub(crate) fn build<B: Send>(
 fn reserve<T>(list: &mut Vec<T>, more: usize) {
     if list.capacity() - list.len() < more {
         list.reserve_exact(more + more / 8 + 16);
+        pages::enlarge(list);
     }
 }
 

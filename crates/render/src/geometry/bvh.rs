@@ -63,6 +63,14 @@ pub(crate) enum Kind {
     Analytic = 3,
 }
 
+impl Kind {
+    /// Whether rays go there one by one.
+    #[inline(always)]
+    pub fn is_alone(self) -> bool {
+        matches!(self, Kind::Instance | Kind::Analytic)
+    }
+}
+
 /// A child of a node: another node, a leaf, or nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Child(u32);

@@ -8,8 +8,9 @@ use glam::Vec3;
 
 use super::bvh::{Child, Kind};
 use super::packet::Packet;
-use super::rays::{Hits, RayView, group, group_bits};
+use super::rays::{Group, Hits, RayView, group, group_bits};
 use super::simd::{Kernel, Lanes, Simd, Vec3s};
+use super::stream::{self, Outcome};
 use super::traverse::{SphereBlock, Tree};
 use super::{Id, PlaneShape};
 
@@ -46,10 +47,10 @@ impl<'a> Few<'a> {
     }
 
     #[inline(always)]
-    fn meet<L: Lanes>(&self, packet: &mut Packet<'_, L>, slots: u32) {
-        packet.planes(self.planes);
+    fn meet<O: Outcome, L: Lanes, S: Simd>(&self, packet: &mut Packet<L, S>, slots: u32) {
+        packet.planes::<O>(self.planes);
         if let Some(block) = self.spheres {
-            packet.spheres(block, slots, u32::MAX, L::splat(0.0));
+            packet.spheres::<O>(block, slots, u32::MAX, L::splat(0.0));
         }
     }
 }
@@ -70,9 +71,10 @@ impl Kernel for Closest<'_> {
         for first in (0..rays.len()).step_by(GROUP) {
             let (end, slots) = few.look::<S>(rays, first);
             for start in (first..end).step_by(S::Wide::COUNT) {
-                let mut packet = Packet::<S::Wide>::new(rays, start, false);
-                few.meet(&mut packet, slots);
-                packet.store(hits);
+                let group = Group::row(&rays, start);
+                let mut packet = Packet::<S::Wide, S>::new::<stream::Closest<'_>>(&group, rays.t_min);
+                few.meet::<stream::Closest<'_>, _, _>(&mut packet, slots);
+                packet.store(start, hits);
             }
         }
     }
@@ -100,11 +102,12 @@ impl Kernel for Occluded<'_> {
                 continue;
             }
             for start in (first..end).step_by(S::Wide::COUNT) {
-                let mut packet = Packet::<S::Wide>::new(rays, start, true);
+                let group = Group::row(&rays, start);
+                let mut packet = Packet::<S::Wide, S>::new::<stream::Blocked<'_>>(&group, rays.t_min);
                 if !packet.is_dead() {
-                    few.meet(&mut packet, slots);
+                    few.meet::<stream::Blocked<'_>, _, _>(&mut packet, slots);
                 }
-                packet.store_blocked(blocked);
+                packet.store_blocked(&mut blocked[start..]);
             }
         }
     }

@@ -14,6 +14,7 @@ use glam::Vec3;
 use super::simd::{Lanes, Vec3s};
 
 /// A ray in each lane, or one ray in all, as boxes see it.
+#[derive(Clone, Copy)]
 pub(crate) struct Slab<S> {
     pub origin: Vec3s<S>,
     pub inverse: Inverse<S>,
@@ -117,7 +118,12 @@ pub(crate) struct Crossing<S> {
 /// than `enter`, where the ray enters the box of the leaf: what a traversal may leave out because of its box must not be
 /// able to win.
 #[inline(always)]
-pub(crate) fn triangle<S: Lanes>(ray: &Shear<S>, corners: [Vec3s<S>; 3], enter: S, t_max: S) -> Option<Crossing<S>> {
+pub(crate) fn triangle<S: Lanes, const EARLY: bool>(
+    ray: &Shear<S>,
+    corners: [Vec3s<S>; 3],
+    enter: S,
+    t_max: S,
+) -> Option<Crossing<S>> {
     let (a, b, c) = (ray.shear(corners[0]), ray.shear(corners[1]), ray.shear(corners[2]));
     // Edge functions: weights of the corners, up to a common factor. On the two sides of an edge they are exact negatives.
     let wa = c.x.mul(b.y).sub(c.y.mul(b.x));
@@ -126,7 +132,7 @@ pub(crate) fn triangle<S: Lanes>(ray: &Shear<S>, corners: [Vec3s<S>; 3], enter: 
     let zero = S::splat(0.0);
     let (least, most) = (wa.min(wb).min(wc), wa.max(wb).max(wc));
     let mask = zero.le(least) | most.le(zero);
-    if mask == 0 {
+    if EARLY && mask == 0 {
         return None;
     }
     let total = wa.add(wb).add(wc);

@@ -10,10 +10,11 @@ mod collapse;
 mod few;
 mod kernel;
 mod packet;
+mod pages;
 mod plan;
 mod rays;
-mod scatter;
 pub(crate) mod simd;
+mod stream;
 mod surface;
 mod traverse;
 
@@ -26,12 +27,10 @@ use jaspe_noise::simd::Level;
 use crate::affine::{self, Affine};
 use crate::motion::Motion;
 use few::Few;
-use packet::Packet;
 pub(crate) use plan::{Placement, Plan};
 pub(crate) use rays::{Hits, Ids, Met, RayView, Rays, Rows, Run, group, padded, put_group, spread};
-use simd::Lanes as _;
+pub(crate) use stream::Scratch;
 pub(crate) use surface::{Surface, Surfaces};
-pub(crate) use traverse::Scratch;
 
 /// A primitive: which object, and which of its triangles (0 for everything else).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -307,19 +306,7 @@ impl simd::Kernel for Closest<'_> {
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Closest { geometry, rays, hits, scratch } = self;
-        let Scratch { packet: stack, flights, inner, scattered } = scratch;
-        scattered.clear();
-        for start in (0..rays.len()).step_by(S::Wide::COUNT) {
-            let mut packet = Packet::<S::Wide>::new(rays, start, false);
-            packet.planes(&geometry.planes);
-            let heading = packet.heading();
-            match packet.way::<S>(&heading) {
-                Some(way) => packet.walk(&geometry.tree, &way, stack, [&mut flights[0], inner]),
-                None => packet.scatter(&heading, scattered),
-            }
-            packet.store(hits);
-        }
-        scatter::trace::<S, _>(&geometry.tree, rays, scattered, flights, inner, &mut scatter::Closest(hits));
+        stream::trace::<S, _>(geometry, rays, scratch, &mut stream::Closest(hits));
     }
 }
 
@@ -337,21 +324,7 @@ impl simd::Kernel for Occluded<'_> {
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
         let Occluded { geometry, rays, blocked, scratch } = self;
-        let Scratch { packet: stack, flights, inner, scattered } = scratch;
-        scattered.clear();
-        for start in (0..rays.len()).step_by(S::Wide::COUNT) {
-            let mut packet = Packet::<S::Wide>::new(rays, start, true);
-            packet.planes(&geometry.planes);
-            if !packet.is_dead() {
-                let heading = packet.heading();
-                match packet.way::<S>(&heading) {
-                    Some(way) => packet.walk(&geometry.tree, &way, stack, [&mut flights[0], inner]),
-                    None => packet.scatter(&heading, scattered),
-                }
-            }
-            packet.store_blocked(blocked);
-        }
-        scatter::trace::<S, _>(&geometry.tree, rays, scattered, flights, inner, &mut scatter::Blocked(blocked));
+        stream::trace::<S, _>(geometry, rays, scratch, &mut stream::Blocked(blocked));
     }
 }
 

@@ -1,44 +1,94 @@
 //! Rays that go the same way, eight or sixteen at a time through the hierarchy: a box or a primitive is loaded once for
 //! all of them. What they meet is what they would meet alone, to the last bit.
+//!
+//! The same way means directions of the same signs. Where only few rays of a packet enter a node, those look into it
+//! alone: the packet keeps a list of that, and in the end hands it over ([`Packet::disperse`]).
 
-use glam::Vec3;
-
-use super::bvh::{Aabb, Child, Kind, Node, Octant, Sides};
+use super::bvh::{Child, Kind, Node, Octant, Sides};
 use super::kernel::{self, Crossing, Inverse, Plain, Shear, Slab};
-use super::rays::{Hits, RayView, group, group_bits, put, put_group};
+use super::rays::{Group, Hits, MOST, Names, RayView, put, put_group};
 use super::simd::{Lanes, Simd, Vec3s};
-use super::traverse::{Course, Flight, Nested, STACK, SphereBlock, Tree, TriangleBlock};
+use super::stream::{Outcome, Pool};
+use super::traverse::{Course, Line, STACK, SphereBlock, Tree, TriangleBlock};
 use super::{Hit, Id, PlaneShape};
 
-/// So few rays go on one by one: alone they test eight boxes in the time in which a packet tests one or two.
-const FEW: u32 = 1;
+/// So few rays look into a node alone. Neighbours stay together to the last; where rays have been gathered from here and
+/// there, they soon part in any case, and alone each knows how far it has to look.
+const FEW_OF_ROW: u32 = 1;
+const FEW_FOR_ANY: u32 = 6;
+const FEW: u32 = 8;
 
 /// So few rays meet the triangles of a leaf one by one, eight triangles at a time.
-const SOME: u32 = 5;
+const SOME: u32 = 4;
 
-/// Where a packet goes on later: children, each as its node and its slot there, where the packet's hull enters them, and
-/// which rays may.
-pub(super) struct Stack {
-    near: [f32; STACK],
-    places: [u32; STACK],
-    masks: [u32; STACK],
+/// Most entries that a packet leaves to its rays.
+pub(super) const LEFT: usize = 64;
+
+/// Where a packet has still to go: children, the rays that enter each, and where.
+#[derive(Debug, Clone)]
+#[repr(C, align(64))]
+pub(super) struct Trail {
+    near: [[f32; MOST]; STACK + LEFT],
+    children: [Child; STACK + LEFT],
+    masks: [u32; STACK + LEFT],
+    /// How many of the first are for the packet: a stack.
+    stack: usize,
+    /// How many from [`STACK`] on are for each ray alone.
+    left: usize,
 }
 
-/// A stack without entries.
-pub(super) fn stack() -> Box<Stack> {
-    Box::new(Stack { near: [0.0; STACK], places: [0; STACK], masks: [0; STACK] })
+impl Trail {
+    pub const EMPTY: Trail = Trail {
+        near: [[0.0; MOST]; STACK + LEFT],
+        children: [Child::NONE; STACK + LEFT],
+        masks: [0; STACK + LEFT],
+        stack: 0,
+        left: 0,
+    };
+
+    /// Keeps what some rays enter: for the packet, or for each of them if they are few.
+    #[inline(always)]
+    fn keep<L: Lanes>(&mut self, child: Child, mask: u32, near: L, few: u32) {
+        let alone = if child.is_node() { mask.count_ones() <= few } else { child.kind().is_alone() };
+        let at = if alone { STACK + self.left } else { self.stack };
+        put_group(near, &mut self.near[at]);
+        (self.children[at], self.masks[at]) = (child, mask);
+        self.stack += usize::from(!alone);
+        self.left += usize::from(alone);
+    }
+
+    /// Where the children are, from those that come last to those that come first.
+    #[inline(always)]
+    fn all(&self) -> impl Iterator<Item = usize> + use<> {
+        (0..self.stack).chain(STACK..STACK + self.left)
+    }
 }
 
 /// Rays and the best that each has met so far.
-pub(super) struct Packet<'a, L> {
-    rays: RayView<'a>,
-    /// The first of them.
-    start: usize,
-    any: bool,
-    origin: Vec3s<L>,
+#[derive(Clone, Copy)]
+pub(super) struct Packet<L, S> {
+    /// Which of the caller's rays they are.
+    numbers: [u32; MOST],
+    /// Whether they follow each other.
+    is_row: bool,
+    /// Lanes that there are rays in.
+    all: u32,
+    /// So few rays look into a node alone.
+    few: u32,
+    slab: Slab<L>,
     direction: Vec3s<L>,
-    t_min: L,
-    /// Rays that are still looking: with `any`, a ray stops at the first hit.
+    /// How far each ray goes along the axes that are not dominant while it goes 1 along that; see [`Shear`].
+    slope: (L, L),
+    scale: L,
+    t_min: f32,
+    sides: Sides,
+    octant: Octant,
+    /// Rays whose dominant axis is the first, and the second.
+    longest: [u32; 2],
+    /// That of all, where they have the same.
+    turned: Option<[usize; 3]>,
+    hull: Hull<S>,
+    /// Rays that are still looking: where anything will do, a ray stops at the first hit.
     alive: u32,
     /// Rays that start at a primitive and must not meet it.
     leaving: u32,
@@ -49,74 +99,52 @@ pub(super) struct Packet<'a, L> {
     ids: Names<L>,
 }
 
-/// An [`Id`] in each lane, as bits.
-#[derive(Clone, Copy)]
-struct Names<L> {
-    object: L,
-    index: L,
-}
-
-impl<L: Lanes> Names<L> {
-    #[inline(always)]
-    fn splat(id: Id) -> Self {
-        Names { object: L::splat(f32::from_bits(id.object)), index: L::splat(f32::from_bits(id.index)) }
-    }
-
-    /// Lanes that hold the same name.
-    #[inline(always)]
-    fn same(self, other: Self) -> u32 {
-        self.object.same_bits(other.object) & self.index.same_bits(other.index)
-    }
-
-    #[inline(always)]
-    fn select(mask: u32, yes: Self, no: Self) -> Self {
-        Names { object: L::select(mask, yes.object, no.object), index: L::select(mask, yes.index, no.index) }
-    }
-}
-
-/// Which rays of a packet go where, as masks.
-pub(super) struct Heading {
-    /// By axis: down it.
-    negative: [u32; 3],
-    /// Mostly along the first axis, and mostly along the second.
-    longest: [u32; 2],
-}
-
-/// What a packet that goes one way needs besides: directions of the same signs, and the same dominant axis.
-pub(super) struct Way<L, S> {
-    slab: Slab<L>,
-    shear: Shear<L>,
-    turned: [usize; 3],
-    sides: Sides,
-    octant: Octant,
-    hull: Hull<S>,
-}
-
 /// A ray that enters boxes no later and leaves them no earlier than any of the packet: intervals of origins and directions
 /// in place of numbers ([Boulos, Wald, Shirley 2006] "Geometric and Arithmetic Culling Methods for Entire Ray Packets").
+#[derive(Clone, Copy)]
 struct Hull<S> {
     enter: (Vec3s<S>, Vec3s<S>),
     leave: (Vec3s<S>, Vec3s<S>),
 }
 
-impl<'a, L: Lanes> Packet<'a, L> {
-    /// The rays from `start` on. Past the end there are rays that look for nothing, and go where the last one goes, so
-    /// that the packet stays as coherent as it is.
+impl<L: Lanes, S: Simd> Packet<L, S> {
+    /// Rays whose directions have the same signs. What the hull does not need is left to [`Packet::aim`].
     #[inline(always)]
-    pub fn new(rays: RayView<'a>, start: usize, any: bool) -> Self {
-        let (zero, t) = (L::splat(0.0), group(rays.t_max, start, -1.0));
-        let (object, index) = (&rays.skip.object, &rays.skip.index);
-        let skip = Names { object: group_bits(object, start, u32::MAX), index: group_bits(index, start, u32::MAX) };
-        let none = Names::splat(Id::NONE);
+    pub fn new<O: Outcome>(group: &Group<L>, t_min: f32) -> Self {
+        let (zero, none) = (L::splat(0.0), Names::splat(Id::NONE));
+        let &Group { origin, direction, t_max: t, skip, is_row, .. } = group;
+        let all = L::ALL >> (L::COUNT - group.count);
+        let mut numbers = [0; MOST];
+        put(group.numbers.store_bits().as_ref(), &mut numbers);
+        let Vec3s { x, y, z } = direction;
+        let one = L::splat(1.0);
+        // A zero has a sign too.
+        let (nx, ny, nz) = (one.copysign(x).lt(zero), one.copysign(y).lt(zero), one.copysign(z).lt(zero));
+        let negative = [nx & 1 != 0, ny & 1 != 0, nz & 1 != 0];
+        let octant = Octant::new(negative);
         Packet {
-            rays,
-            start,
-            any,
-            origin: rays.origin.group(start),
-            direction: rays.direction.group(start),
-            t_min: L::splat(rays.t_min),
-            alive: zero.le(t),
-            leaving: L::ALL & !skip.same(none),
+            numbers,
+            is_row,
+            all,
+            few: if is_row {
+                FEW_OF_ROW
+            } else if O::ANY {
+                FEW_FOR_ANY
+            } else {
+                FEW
+            },
+            hull: Hull::around(origin, direction, negative),
+            slab: Slab { origin, inverse: Inverse { enter: direction, leave: direction } },
+            direction,
+            slope: (zero, zero),
+            scale: zero,
+            t_min,
+            sides: octant.sides(),
+            octant,
+            longest: [0; 2],
+            turned: None,
+            alive: zero.le(t) & all,
+            leaving: all & !skip.same(none),
             skip,
             t,
             u: zero,
@@ -125,184 +153,137 @@ impl<'a, L: Lanes> Packet<'a, L> {
         }
     }
 
+    /// Works out what boxes and triangles need to know of directions.
+    #[inline(always)]
+    fn aim(&mut self) {
+        let (Vec3s { x, y, z }, all, zero) = (self.direction, self.all, L::splat(0.0));
+        let size = Vec3s { x: x.max(zero.sub(x)), y: y.max(zero.sub(y)), z: z.max(zero.sub(z)) };
+        let first = size.y.le(size.x) & size.z.le(size.x);
+        let second = size.z.le(size.y) & !first;
+        let longest = L::select(first, x, L::select(second, y, z));
+        let i = L::select(first, y, L::select(second, z, x)).div(longest);
+        let j = L::select(first, z, L::select(second, x, y)).div(longest);
+        self.turned = match [first & all, second & all] {
+            [first, 0] if first == all => Some(kernel::turned(0)),
+            [0, second] if second == all => Some(kernel::turned(1)),
+            [0, 0] => Some(kernel::turned(2)),
+            _ => None,
+        };
+        (self.slope, self.scale, self.longest) = ((i, j), L::splat(1.0).div(longest), [first, second]);
+        self.slab.inverse = Inverse::new(self.direction);
+    }
+
+    /// The dominant axis of ray `k`.
+    #[inline(always)]
+    fn dominant(&self, k: usize) -> u32 {
+        2 - 2 * (self.longest[0] >> k & 1) - (self.longest[1] >> k & 1)
+    }
+
+    /// What ray `i` has met.
+    #[inline(always)]
+    fn hit(&self, i: usize) -> Hit {
+        let (t, u, v) = (self.t.store(), self.u.store(), self.v.store());
+        Hit { t: t.as_ref()[i], u: u.as_ref()[i], v: v.as_ref()[i], id: self.ids.get(i), time: None }
+    }
+
     /// Whether no ray of the packet looks for anything.
     #[inline(always)]
     pub fn is_dead(&self) -> bool {
         self.alive == 0
     }
 
-    /// Writes what the rays have met.
-    #[inline(always)]
-    pub fn store(&self, hits: &mut Hits) {
-        put_group(self.t, &mut hits.t[self.start..]);
-        put_group(self.u, &mut hits.u[self.start..]);
-        put_group(self.v, &mut hits.v[self.start..]);
-        put(self.ids.object.store_bits().as_ref(), &mut hits.id.object[self.start..]);
-        put(self.ids.index.store_bits().as_ref(), &mut hits.id.index[self.start..]);
-    }
-
-    /// Writes which rays have met anything, or have not looked.
-    #[inline(always)]
-    pub fn store_blocked(&self, blocked: &mut [bool]) {
-        for (i, blocked) in blocked[self.start..].iter_mut().take(L::COUNT).enumerate() {
-            *blocked = self.alive >> i & 1 == 0;
-        }
-    }
-
-    /// Leaves the rays that look for something to whoever traces them one by one.
-    #[inline(always)]
-    pub fn scatter(&self, heading: &Heading, scattered: &mut Vec<(u32, Course)>) {
-        let (first, second) = (heading.longest[0], heading.longest[1]);
-        let inverse = Inverse::new(self.direction);
-        let Vec3s { x, y, z } = self.direction;
-        let longest = L::select(first, x, L::select(second, y, z));
-        let i = L::select(first, y, L::select(second, z, x)).div(longest).store();
-        let j = L::select(first, z, L::select(second, x, y)).div(longest).store();
-        let scale = L::splat(1.0).div(longest).store();
-        let ([ex, ey, ez], [lx, ly, lz]) = (inverse.enter.store(), inverse.leave.store());
-        let (i, j, scale, ex, ey, ez) = (i.as_ref(), j.as_ref(), scale.as_ref(), ex.as_ref(), ey.as_ref(), ez.as_ref());
-        let (lx, ly, lz) = (lx.as_ref(), ly.as_ref(), lz.as_ref());
-        let [sx, sy, sz] = heading.negative;
-        let mut rest = self.alive;
-        while rest != 0 {
-            let k = rest.trailing_zeros() as usize % L::COUNT;
-            rest &= rest - 1;
-            let course = Course {
-                enter: [ex[k], ey[k], ez[k]],
-                leave: [lx[k], ly[k], lz[k]],
-                slope: [i[k], j[k]],
-                scale: scale[k],
-                octant: Octant((sx >> k & 1) | (sy >> k & 1) << 1 | (sz >> k & 1) << 2),
-                dominant: 2 - 2 * (first >> k & 1) - (second >> k & 1),
-            };
-            scattered.push(((self.start + k) as u32, course));
-        }
-    }
-
-    /// What ray `i` has met.
-    #[inline(always)]
-    fn hit(&self, i: usize) -> Hit {
-        let (object, index) = (self.ids.object.store_bits(), self.ids.index.store_bits());
-        let (t, u, v) = (self.t.store(), self.u.store(), self.v.store());
-        let id = Id { object: object.as_ref()[i], index: index.as_ref()[i] };
-        Hit { t: t.as_ref()[i], u: u.as_ref()[i], v: v.as_ref()[i], id, time: None }
-    }
-
-    /// Which way each ray goes.
-    #[inline(always)]
-    pub fn heading(&self) -> Heading {
-        let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let Vec3s { x, y, z } = self.direction;
-        // A zero has a sign too.
-        let negative = [one.copysign(x).lt(zero), one.copysign(y).lt(zero), one.copysign(z).lt(zero)];
-        let (x, y, z) = (x.max(zero.sub(x)), y.max(zero.sub(y)), z.max(zero.sub(z)));
-        let first = y.le(x) & z.le(x);
-        Heading { negative, longest: [first, z.le(y) & !first] }
-    }
-
-    /// `None` if the rays do not go one way.
-    #[inline(always)]
-    pub fn way<S: Simd>(&self, heading: &Heading) -> Option<Way<L, S>> {
-        let [x, y, z] = heading.negative;
-        let dominant = match heading.longest {
-            [first, 0] if first == L::ALL => 0,
-            [0, second] if second == L::ALL => 1,
-            [0, 0] => 2,
-            _ => return None,
-        };
-        if (x != 0 && x != L::ALL) || (y != 0 && y != L::ALL) || (z != 0 && z != L::ALL) {
-            return None;
-        }
-        let inverse = Inverse::new(self.direction);
-        let turned = kernel::turned(dominant);
-        let (origin, direction) = (self.origin.turned(turned), self.direction.turned(turned));
-        let slope = (direction.x.div(direction.z), direction.y.div(direction.z));
-        let scale = L::splat(1.0).div(direction.z);
-        let negative = [x != 0, y != 0, z != 0];
-        let octant = Octant::new(negative);
-        Some(Way {
-            shear: Shear { origin, slope, scale, t_min: self.t_min },
-            turned,
-            sides: octant.sides(),
-            octant,
-            hull: Hull::around(self.origin, &inverse, negative),
-            slab: Slab { origin: self.origin, inverse },
-        })
-    }
-
     /// Goes through the tree, nearest boxes first.
     #[inline(always)]
-    pub fn walk<S: Simd>(
-        &mut self,
-        tree: &Tree,
-        way: &Way<L, S>,
-        stack: &mut Stack,
-        [flight, inner]: [&mut Flight; 2],
-    ) {
+    pub fn walk<O: Outcome>(&mut self, tree: &Tree, trail: &mut Trail) {
+        (trail.stack, trail.left) = (0, 0);
         let root = tree.root;
-        if !root.is_node() {
-            if root != Child::NONE {
-                self.leaf::<S>(tree, root, way, self.alive, L::splat(0.0), [flight, inner]);
+        if root.is_node() && self.alive.count_ones() > self.few {
+            let slots = self.enters(tree, root);
+            if slots.1 == 0 {
+                return;
             }
-            return;
+            self.aim();
+            self.open(tree, trail, root, slots, self.alive);
+        } else if root != Child::NONE {
+            self.aim();
+            trail.keep(root, self.alive, L::splat(0.0), self.few);
         }
-        let mut farthest = self.t.most();
-        let mut top = way.open(tree, root.index(), self.alive, farthest, stack, 0);
-        while top > 0 {
-            top -= 1;
-            let (place, mask) = (stack.places[top], stack.masks[top] & self.alive);
-            if mask == 0 || stack.near[top] > farthest {
-                continue;
-            }
-            let (node, slot) = (&tree.nodes[place as usize >> 3], place as usize & 7);
-            let (enter, leave) = way.enter(node, slot);
-            let active = mask & enter.le(leave.min(self.t));
+        // Few rays go on alone, and so do all where there is no room for what is left to them.
+        while trail.stack > 0 && trail.left <= LEFT - 9 && self.alive.count_ones() > self.few {
+            let top = trail.stack - 1;
+            trail.stack = top;
+            let near = L::load(&trail.near[top]);
+            let active = trail.masks[top] & self.alive & near.le(self.t);
             if active == 0 {
                 continue;
             }
-            let child = node.child(slot);
-            if active.count_ones() <= FEW {
-                self.alone::<S>(tree, child, active, enter, [&mut *flight, &mut *inner]);
-            } else if child.is_node() {
-                top = way.open(tree, child.index(), active, farthest, stack, top);
-                continue;
+            let child = trail.children[top];
+            if child.is_node() {
+                self.open(tree, trail, child, self.enters(tree, child), active);
             } else {
-                self.leaf::<S>(tree, child, way, active, enter, [&mut *flight, &mut *inner]);
-            }
-            if self.any {
-                if self.alive == 0 {
-                    return;
-                }
-            } else {
-                farthest = self.t.most();
+                self.meet::<O>(tree, child, active, near);
             }
         }
+    }
+
+    /// The children of a node that the hull enters: their slots, from the farthest to the nearest, and how many they are.
+    #[inline(always)]
+    fn enters(&self, tree: &Tree, node: Child) -> ([u32; 8], usize) {
+        const SLOTS: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+        let (node, hull) = (&tree.nodes[node.index()], &self.hull);
+        let near = node.near(self.sides).sub(hull.enter.0).mul(hull.enter.1);
+        let far = node.far(self.sides).sub(hull.leave.0).mul(hull.leave.1);
+        let enter = near.x.max(near.y).max(near.z.max(S::splat(0.0)));
+        let leave = far.x.min(far.y).min(far.z);
+        let (mut values, mut slots) = ([0.0; 8], [0; 8]);
+        let count = enter.pack(leave, &node.order, self.octant.shift(), &SLOTS, &mut values, &mut slots);
+        (slots, count)
+    }
+
+    /// Keeps those of some children of a node that any of the `active` rays enters.
+    #[inline(always)]
+    fn open(&self, tree: &Tree, trail: &mut Trail, node: Child, (slots, count): ([u32; 8], usize), active: u32) {
+        let node = &tree.nodes[node.index()];
+        for &slot in &slots[..count.min(8)] {
+            let slot = slot as usize & 7;
+            let child = node.child(slot);
+            tree.prefetch::<S>(child);
+            let (enter, leave) = self.enter(node, slot);
+            let mask = active & enter.le(leave.min(self.t));
+            if mask != 0 {
+                trail.keep(child, mask, enter, self.few);
+            }
+        }
+    }
+
+    /// Where the rays enter and leave one child of a node.
+    #[inline(always)]
+    fn enter(&self, node: &Node, slot: usize) -> (L, L) {
+        let (sides, [x, y, z]) =
+            (&node.sides, [self.sides.0[0] as usize, self.sides.0[1] as usize, self.sides.0[2] as usize]);
+        let near = Vec3s::of([sides[x][slot], sides[y][slot], sides[z][slot]]);
+        let far = Vec3s::of([sides[x ^ 1][slot], sides[y ^ 1][slot], sides[z ^ 1][slot]]);
+        kernel::slab(near, far, &self.slab)
     }
 
     /// Meets what is in a leaf that the `active` rays enter at `near`.
     #[inline(always)]
-    fn leaf<S: Simd>(
-        &mut self,
-        tree: &Tree,
-        child: Child,
-        way: &Way<L, S>,
-        active: u32,
-        near: L,
-        flights: [&mut Flight; 2],
-    ) {
-        match child.kind() {
-            Kind::Triangles if active.count_ones() <= SOME => {
-                self.triangles_alone(&tree.triangles[child.index()], way, active, near);
+    fn meet<O: Outcome>(&mut self, tree: &Tree, child: Child, active: u32, near: L) {
+        match (child.kind(), self.turned) {
+            (Kind::Triangles, Some(turned)) if active.count_ones() > SOME => {
+                self.triangles::<O>(&tree.triangles[child.index()], turned, active, near);
             }
-            Kind::Triangles => self.triangles(&tree.triangles[child.index()], way, active, near),
-            Kind::Spheres => self.spheres(&tree.spheres[child.index()], u32::MAX, active, near),
-            Kind::Instance | Kind::Analytic => self.alone::<S>(tree, child, active, near, flights),
+            (Kind::Triangles, _) => self.triangles_alone::<O>(&tree.triangles[child.index()], active, near),
+            (Kind::Spheres, _) => self.spheres::<O>(&tree.spheres[child.index()], u32::MAX, active, near),
+            (Kind::Instance | Kind::Analytic, _) => unreachable!("rays go there alone"),
         }
     }
 
     #[inline(always)]
-    fn triangles<S>(&mut self, block: &TriangleBlock, way: &Way<L, S>, active: u32, near: L) {
-        let [i, j, k] = [way.turned[0] % 3, way.turned[1] % 3, way.turned[2] % 3];
+    fn triangles<O: Outcome>(&mut self, block: &TriangleBlock, turned: [usize; 3], active: u32, near: L) {
+        let (origin, t_min) = (self.slab.origin.turned(turned), L::splat(self.t_min));
+        let shear = Shear { origin, slope: self.slope, scale: self.scale, t_min };
+        let [i, j, k] = [turned[0] % 3, turned[1] % 3, turned[2] % 3];
         for (slot, &id) in block.ids.iter().enumerate() {
             if id == Id::NONE {
                 break;
@@ -313,37 +294,43 @@ impl<'a, L: Lanes> Packet<'a, L> {
                 Vec3s::of([b[i][slot], b[j][slot], b[k][slot]]),
                 Vec3s::of([c[i][slot], c[j][slot], c[k][slot]]),
             ];
-            if let Some(crossing) = kernel::triangle(&way.shear, corners, near, self.t) {
-                self.improve(crossing, active, id);
+            if let Some(crossing) = kernel::triangle::<L, true>(&shear, corners, near, self.t) {
+                self.improve::<O>(crossing, active, id);
             }
         }
     }
 
     /// The same, ray by ray with eight triangles at a time.
     #[inline(always)]
-    fn triangles_alone<S: Simd>(&mut self, block: &TriangleBlock, way: &Way<L, S>, active: u32, near: L) {
-        let Shear { origin, slope, scale, .. } = way.shear;
-        let (near, scale, t) = (near.store(), scale.store(), self.t.store());
-        let ([x, y, z], i, j) = (origin.store(), slope.0.store(), slope.1.store());
-        let t_min = S::splat(self.rays.t_min);
+    fn triangles_alone<O: Outcome>(&mut self, block: &TriangleBlock, active: u32, near: L) {
+        let near = near.store();
+        let Vec3s { x, y, z } = self.slab.origin;
+        let origin = [x.store(), y.store(), z.store()];
+        let (i, j, scale) = (self.slope.0.store(), self.slope.1.store(), self.scale.store());
+        let t_min = S::splat(self.t_min);
         let mut rest = active;
         while rest != 0 {
             let k = rest.trailing_zeros() as usize % L::COUNT;
             rest &= rest - 1;
+            let turned = kernel::turned(self.dominant(k) as usize);
             let shear = Shear {
-                origin: Vec3s::of([x.as_ref()[k], y.as_ref()[k], z.as_ref()[k]]),
+                origin: Vec3s::of([
+                    origin[turned[0] % 3].as_ref()[k],
+                    origin[turned[1] % 3].as_ref()[k],
+                    origin[turned[2] % 3].as_ref()[k],
+                ]),
                 slope: (S::splat(i.as_ref()[k]), S::splat(j.as_ref()[k])),
                 scale: S::splat(scale.as_ref()[k]),
                 t_min,
             };
-            let skip = if self.leaving >> k & 1 != 0 { self.rays.skip.get(self.start + k) } else { Id::NONE };
-            let t = t.as_ref()[k];
-            let Some(crossing) = block.cross(&shear, way.turned, near.as_ref()[k], t) else { continue };
+            let t = self.t.store().as_ref()[k];
+            let Some(crossing) = block.cross(&shear, turned, near.as_ref()[k], t) else { continue };
+            let skip = if self.leaving >> k & 1 != 0 { self.skip.get(k) } else { Id::NONE };
             let mut hit = self.hit(k);
             let known = hit.id;
             crossing.improve(&mut hit, &block.ids, skip);
             if hit.id == known {
-            } else if self.any {
+            } else if O::ANY {
                 self.alive &= !(1 << k);
             } else {
                 self.set(1 << k, [L::splat(hit.t), L::splat(hit.u), L::splat(hit.v)], hit.id);
@@ -353,8 +340,9 @@ impl<'a, L: Lanes> Packet<'a, L> {
 
     /// Meets the spheres of a block that are in the mask `slots`.
     #[inline(always)]
-    pub fn spheres(&mut self, block: &SphereBlock, slots: u32, active: u32, near: L) {
-        let plain = Plain { origin: self.origin, direction: self.direction, t_min: self.t_min };
+    pub fn spheres<O: Outcome>(&mut self, block: &SphereBlock, slots: u32, active: u32, near: L) {
+        let (origin, direction) = (self.slab.origin, self.direction);
+        let plain = Plain { origin, direction, t_min: L::splat(self.t_min) };
         for (slot, &id) in block.ids.iter().enumerate() {
             if id == Id::NONE {
                 break;
@@ -365,49 +353,27 @@ impl<'a, L: Lanes> Packet<'a, L> {
             let [x, y, z] = &block.centers;
             let (center, radius) = (Vec3s::of([x[slot], y[slot], z[slot]]), L::splat(block.radii[slot]));
             if let Some(crossing) = kernel::sphere(&plain, center, radius, near, self.t) {
-                self.improve(crossing, active, id);
-            }
-        }
-    }
-
-    /// Sends the `active` rays on without the others.
-    #[inline(always)]
-    fn alone<S: Simd>(&mut self, tree: &Tree, child: Child, active: u32, near: L, [flight, inner]: [&mut Flight; 2]) {
-        let near = near.store();
-        let mut rest = active & self.alive;
-        while rest != 0 {
-            let i = rest.trailing_zeros() as usize % L::COUNT;
-            rest &= rest - 1;
-            let known = self.hit(i);
-            let ray = self.rays.get(self.start + i);
-            flight.begin(ray, Course::new::<S>(ray.direction), (near.as_ref()[i], child), known);
-            flight.fly::<S>(tree, self.any, &mut Nested { flight: &mut *inner, any: self.any });
-            let hit = flight.best;
-            if hit.id == known.id {
-            } else if self.any {
-                self.alive &= !(1 << i);
-            } else {
-                self.set(1 << i, [L::splat(hit.t), L::splat(hit.u), L::splat(hit.v)], hit.id);
+                self.improve::<O>(crossing, active, id);
             }
         }
     }
 
     /// The infinite planes.
     #[inline(always)]
-    pub fn planes(&mut self, planes: &[PlaneShape]) {
+    pub fn planes<O: Outcome>(&mut self, planes: &[PlaneShape]) {
         for plane in planes {
-            let offset = Vec3s::splat(plane.point).sub(self.origin);
+            let offset = Vec3s::splat(plane.point).sub(self.slab.origin);
             let normal = Vec3s::splat(plane.normal);
             let t = offset.dot(normal).div(self.direction.dot(normal));
-            let mask = self.t_min.lt(t) & t.le(self.t);
+            let mask = L::splat(self.t_min).lt(t) & t.le(self.t);
             let zero = L::splat(0.0);
-            self.improve(Crossing { mask, t, u: zero, v: zero }, self.alive, plane.id());
+            self.improve::<O>(Crossing { mask, t, u: zero, v: zero }, self.alive, plane.id());
         }
     }
 
     /// Keeps the better hit of every ray that met this primitive.
     #[inline(always)]
-    fn improve(&mut self, crossing: Crossing<L>, active: u32, id: Id) {
+    fn improve<O: Outcome>(&mut self, crossing: Crossing<L>, active: u32, id: Id) {
         let mut mask = crossing.mask & active & self.alive;
         if mask == 0 {
             return;
@@ -415,7 +381,7 @@ impl<'a, L: Lanes> Packet<'a, L> {
         if mask & self.leaving != 0 {
             mask &= !self.skip.same(Names::splat(id));
         }
-        if self.any {
+        if O::ANY {
             self.alive &= !mask;
             return;
         }
@@ -424,7 +390,7 @@ impl<'a, L: Lanes> Packet<'a, L> {
         while tied != 0 {
             let i = tied.trailing_zeros() as usize % L::COUNT;
             tied &= tied - 1;
-            if !id.precedes(self.hit(i).id) {
+            if !id.precedes(self.ids.get(i)) {
                 mask &= !(1 << i);
             }
         }
@@ -439,62 +405,123 @@ impl<'a, L: Lanes> Packet<'a, L> {
         self.v = L::select(mask, v, self.v);
         self.ids = Names::select(mask, Names::splat(id), self.ids);
     }
+
+    /// Hands over what the rays have met that have nothing to look into any more, and sends off the others, each alone.
+    #[inline(always)]
+    pub fn disperse<O: Outcome>(
+        &self,
+        rays: RayView<'_>,
+        tree: &Tree,
+        trail: &mut Trail,
+        pool: &mut Pool,
+        outcome: &mut O,
+    ) {
+        let mut going = 0;
+        for at in trail.all() {
+            trail.masks[at] &= self.alive & L::load(&trail.near[at]).le(self.t);
+            going |= trail.masks[at];
+        }
+        if self.is_row {
+            outcome.take_row(self.numbers[0] as usize, self);
+        } else {
+            let mut rest = !going & self.all;
+            while rest != 0 {
+                let k = rest.trailing_zeros() as usize % L::COUNT;
+                rest &= rest - 1;
+                outcome.take(self.numbers[k] as usize, &self.hit(k), self.alive >> k & 1 == 0);
+            }
+        }
+        if going != 0 {
+            pool.make_room::<S, O>(going.count_ones() as usize, tree, outcome);
+            self.send(rays, tree, trail, pool, going);
+        }
+    }
+
+    /// Sends some rays off, each with what is left for it.
+    #[inline(always)]
+    fn send(&self, rays: RayView<'_>, tree: &Tree, trail: &Trail, pool: &mut Pool, going: u32) {
+        let Slab { origin: o, inverse: Inverse { enter, leave } } = self.slab;
+        let ((i, j), d) = (self.slope, self.direction);
+        let lines = L::lines([
+            o.x, o.y, o.z, enter.x, enter.y, enter.z, leave.x, leave.y, leave.z, i, j, self.scale, d.x, d.y, d.z,
+            self.t,
+        ]);
+        let mut places = [0; MOST];
+        let mut rest = going;
+        while rest != 0 {
+            let k = rest.trailing_zeros() as usize % L::COUNT;
+            rest &= rest - 1;
+            let number = self.numbers[k];
+            let course = Course {
+                octant: self.octant,
+                dominant: self.dominant(k),
+                t_min: self.t_min,
+                skip: self.skip.get(k),
+                time: rays.time.get(number as usize).copied(),
+                number,
+            };
+            places[k] = pool.begin(Line(lines[k]), course, self.hit(k));
+        }
+        for at in trail.all() {
+            let (child, near) = (trail.children[at], &trail.near[at]);
+            let mut rest = trail.masks[at];
+            while rest != 0 {
+                let k = rest.trailing_zeros() as usize % L::COUNT;
+                rest &= rest - 1;
+                pool.flight(places[k]).push(near[k], child);
+            }
+        }
+        let mut rest = going;
+        while rest != 0 {
+            let k = rest.trailing_zeros() as usize % L::COUNT;
+            rest &= rest - 1;
+            pool.go::<S>(tree, places[k]);
+        }
+    }
+
+    /// Writes what consecutive rays have met.
+    #[inline(always)]
+    pub fn store(&self, first: usize, hits: &mut Hits) {
+        put_group(self.t, &mut hits.t[first..]);
+        put_group(self.u, &mut hits.u[first..]);
+        put_group(self.v, &mut hits.v[first..]);
+        put(self.ids.object.store_bits().as_ref(), &mut hits.id.object[first..]);
+        put(self.ids.index.store_bits().as_ref(), &mut hits.id.index[first..]);
+    }
+
+    /// Writes which of consecutive rays have met anything, or have not looked.
+    #[inline(always)]
+    pub fn store_blocked(&self, blocked: &mut [bool]) {
+        for (i, blocked) in blocked.iter_mut().take(L::COUNT).enumerate() {
+            *blocked = self.alive >> i & 1 == 0;
+        }
+    }
 }
 
 impl<S: Simd> Hull<S> {
     /// With directions of positive sign a box is entered the earliest by the origin that lies farthest and the smallest
     /// inverse, unless it lies behind, where all is cut off at 0; it is left the latest by the opposite.
     #[inline(always)]
-    fn around<L: Lanes>(origin: Vec3s<L>, inverse: &Inverse<L>, negative: [bool; 3]) -> Self {
-        let (origins, enter, leave) = (Aabb::of(origin), Aabb::of(inverse.enter), Aabb::of(inverse.leave));
-        let negative = glam::BVec3::from_array(negative);
-        let pick = |positive: Vec3, other: Vec3| Vec3::select(negative, other, positive);
-        let (last, first) = (pick(origins.max, origins.min), pick(origins.min, origins.max));
+    fn around<L: Lanes>(origin: Vec3s<L>, direction: Vec3s<L>, negative: [bool; 3]) -> Self {
+        let [(ex, dx), (lx, mx)] = ends(origin.x, direction.x, negative[0]);
+        let [(ey, dy), (ly, my)] = ends(origin.y, direction.y, negative[1]);
+        let [(ez, dz), (lz, mz)] = ends(origin.z, direction.z, negative[2]);
+        // Of numbers of one sign, the greatest has the smallest inverse.
+        let inverse = kernel::inverse(S::load(&[dx, dy, dz, mx, my, mz, 1.0, 1.0]));
+        let ([dx, dy, dz, ..], [.., mx, my, mz, _, _]) = (inverse.enter.store(), inverse.leave.store());
         Hull {
-            enter: (Vec3s::splat(last), Vec3s::splat(pick(enter.min, enter.max))),
-            leave: (Vec3s::splat(first), Vec3s::splat(pick(leave.max, leave.min))),
+            enter: (Vec3s::of([ex, ey, ez]), Vec3s::of([dx, dy, dz])),
+            leave: (Vec3s::of([lx, ly, lz]), Vec3s::of([mx, my, mz])),
         }
     }
 }
 
-impl Aabb {
-    /// The box around a point in each lane.
-    #[inline(always)]
-    fn of<L: Lanes>(points: Vec3s<L>) -> Self {
-        let Vec3s { x, y, z } = points;
-        Aabb { min: Vec3::new(x.least(), y.least(), z.least()), max: Vec3::new(x.most(), y.most(), z.most()) }
-    }
-}
-
-impl<L: Lanes, S: Simd> Way<L, S> {
-    /// Puts the children of a node that the hull enters on the stack, and returns the new top.
-    #[inline(always)]
-    fn open(&self, tree: &Tree, node: usize, active: u32, farthest: f32, stack: &mut Stack, top: usize) -> usize {
-        let at = (node as u32) << 3;
-        let node = &tree.nodes[node];
-        let near = node.near(self.sides).sub(self.hull.enter.0).mul(self.hull.enter.1);
-        let far = node.far(self.sides).sub(self.hull.leave.0).mul(self.hull.leave.1);
-        let enter = near.x.max(near.y).max(near.z.max(S::splat(0.0)));
-        let leave = far.x.min(far.y).min(far.z);
-        let room = (
-            stack.near[top..].first_chunk_mut(),
-            stack.places[top..].first_chunk_mut(),
-            stack.masks[top..].first_chunk_mut::<8>(),
-        );
-        let (Some(near), Some(places), Some(masks)) = room else { unreachable!("the stack has room for eight more") };
-        *masks = [active; 8];
-        let slots = [at, at | 1, at | 2, at | 3, at | 4, at | 5, at | 6, at | 7];
-        let limit = leave.min(S::splat(farthest));
-        top + enter.pack(limit, &node.order, self.octant.shift(), &slots, near, places)
-    }
-
-    /// Where the rays enter and leave one child of a node.
-    #[inline(always)]
-    fn enter(&self, node: &Node, slot: usize) -> (L, L) {
-        let (sides, [x, y, z]) =
-            (&node.sides, [self.sides.0[0] as usize, self.sides.0[1] as usize, self.sides.0[2] as usize]);
-        let near = Vec3s::of([sides[x][slot], sides[y][slot], sides[z][slot]]);
-        let far = Vec3s::of([sides[x ^ 1][slot], sides[y ^ 1][slot], sides[z ^ 1][slot]]);
-        kernel::slab(near, far, &self.slab)
+/// For one axis, the origin and the direction for which boxes are entered first, and those for which they are left last.
+#[inline(always)]
+fn ends<L: Lanes>(origin: L, direction: L, negative: bool) -> [(f32, f32); 2] {
+    if negative {
+        [(origin.least(), direction.least()), (origin.most(), direction.most())]
+    } else {
+        [(origin.most(), direction.most()), (origin.least(), direction.least())]
     }
 }

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::analytic::{Analytic, Leaf, Leaves};
 use super::build::{Item, build};
 use super::bvh::{Aabb, Child, Kind, Node};
+use super::pages;
 use super::traverse::{InstanceLeaf, SphereBlock, Tree, TriangleBlock};
 use super::{Geometry, Id, MeshShape, Motions, Object, PerVertex, PlaneShape, Pose, Shape, SphereSet};
 use crate::affine::{self, Affine};
@@ -287,6 +288,7 @@ impl Builder {
         // Where each mesh's triangles start in the builder's numbering.
         let mut starts = Vec::with_capacity(meshes.len());
         let mut items = Vec::with_capacity(meshes.iter().map(|(mesh, _)| mesh.triangles.len()).sum());
+        pages::enlarge(&items);
         let mut next = 0u32;
         for (mesh, _) in &meshes {
             starts.push(next);

@@ -232,14 +232,6 @@ impl RayView<'_> {
     pub fn len(&self) -> usize {
         self.t_max.len()
     }
-
-    /// Ray `i`.
-    #[inline(always)]
-    pub fn get(&self, i: usize) -> Ray {
-        let (origin, direction) = (self.origin.get(i), self.direction.get(i));
-        let time = self.time.get(i).copied();
-        Ray { origin, direction, t_min: self.t_min, t_max: self.t_max[i], skip: self.skip.get(i), time }
-    }
 }
 
 impl Rows {
@@ -252,7 +244,7 @@ impl Rows {
 }
 
 /// Most lanes that there are.
-const MOST: usize = 16;
+pub(super) const MOST: usize = 16;
 
 /// So many numbers and as many more as fill the lanes: what those hold means nothing.
 #[inline(always)]
@@ -275,6 +267,136 @@ pub(super) fn group_bits<L: Lanes>(row: &[u32], start: usize, fill: u32) -> L {
 #[inline(always)]
 fn filled<T: Copy>(row: &[T], fill: T) -> [T; MOST] {
     std::array::from_fn(|i| row.get(i).copied().unwrap_or(fill))
+}
+
+/// A ray in each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Group<L> {
+    pub origin: Vec3s<L>,
+    pub direction: Vec3s<L>,
+    pub t_max: L,
+    pub skip: Names<L>,
+    /// Which of the caller's rays they are, as bits.
+    pub numbers: L,
+    /// How many lanes there are rays in, from the first on. In the others there are some of these again.
+    pub count: usize,
+    /// Whether they follow each other in the caller's rows.
+    pub is_row: bool,
+}
+
+/// An [`Id`] in each lane, as bits.
+#[derive(Clone, Copy)]
+pub(super) struct Names<L> {
+    pub object: L,
+    pub index: L,
+}
+
+impl<L: Lanes> Names<L> {
+    #[inline(always)]
+    pub fn splat(id: Id) -> Self {
+        Names { object: L::splat(f32::from_bits(id.object)), index: L::splat(f32::from_bits(id.index)) }
+    }
+
+    /// Lanes that hold the same name.
+    #[inline(always)]
+    pub fn same(self, other: Self) -> u32 {
+        self.object.same_bits(other.object) & self.index.same_bits(other.index)
+    }
+
+    #[inline(always)]
+    pub fn select(mask: u32, yes: Self, no: Self) -> Self {
+        Names { object: L::select(mask, yes.object, no.object), index: L::select(mask, yes.index, no.index) }
+    }
+
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Id {
+        let (object, index) = (self.object.store_bits(), self.index.store_bits());
+        Id { object: object.as_ref()[lane], index: index.as_ref()[lane] }
+    }
+}
+
+impl<L: Lanes> Group<L> {
+    /// The rays from one on, as many as there are lanes.
+    #[inline(always)]
+    pub fn row(rays: &RayView<'_>, first: usize) -> Self {
+        let mut numbers = [0; MOST];
+        for (i, number) in numbers.iter_mut().enumerate() {
+            *number = (first + i) as u32;
+        }
+        let (RayView { origin: o, direction: d, t_max, skip, .. }, end) = (rays, rays.len());
+        Group {
+            origin: Vec3s { x: until(&o.x, first, end), y: until(&o.y, first, end), z: until(&o.z, first, end) },
+            direction: Vec3s { x: until(&d.x, first, end), y: until(&d.y, first, end), z: until(&d.z, first, end) },
+            t_max: until(t_max, first, end),
+            skip: Names {
+                object: group_bits(&skip.object, first, Id::NONE.object),
+                index: group_bits(&skip.index, first, Id::NONE.index),
+            },
+            numbers: L::load_bits(&numbers),
+            count: L::COUNT.min(end - first),
+            is_row: true,
+        }
+    }
+}
+
+/// As many of the first `end` of a row as there are lanes, filled up by the last of them.
+#[inline(always)]
+fn until<L: Lanes>(row: &[f32], first: usize, end: usize) -> L {
+    group(&row[..end], first, row[end - 1])
+}
+
+/// Rays that wait to become a group, less than twice as many as there are lanes: the rows of [`Group`].
+pub(super) struct Queue {
+    rows: [[f32; 2 * MOST]; 10],
+    pub count: usize,
+}
+
+impl Queue {
+    pub const EMPTY: Queue = Queue { rows: [[0.0; 2 * MOST]; 10], count: 0 };
+
+    /// Adds those rays of a group that are in `mask`.
+    #[inline(always)]
+    pub fn add<L: Lanes>(&mut self, group: &Group<L>, mask: u32) {
+        let Group { origin: o, direction: d, t_max, skip, numbers, .. } = group;
+        let at = self.count.min(MOST);
+        let [ox, oy, oz, dx, dy, dz, t, object, index, number] = &mut self.rows;
+        put(o.x.compress(mask).store().as_ref(), &mut ox[at..]);
+        put(o.y.compress(mask).store().as_ref(), &mut oy[at..]);
+        put(o.z.compress(mask).store().as_ref(), &mut oz[at..]);
+        put(d.x.compress(mask).store().as_ref(), &mut dx[at..]);
+        put(d.y.compress(mask).store().as_ref(), &mut dy[at..]);
+        put(d.z.compress(mask).store().as_ref(), &mut dz[at..]);
+        put(t_max.compress(mask).store().as_ref(), &mut t[at..]);
+        put(skip.object.compress(mask).store().as_ref(), &mut object[at..]);
+        put(skip.index.compress(mask).store().as_ref(), &mut index[at..]);
+        put(numbers.compress(mask).store().as_ref(), &mut number[at..]);
+        self.count += mask.count_ones() as usize;
+    }
+
+    /// Takes those that came last: as many as there are lanes, or all.
+    #[inline(always)]
+    pub fn take<L: Lanes>(&mut self) -> Group<L> {
+        let count = self.count.min(L::COUNT);
+        self.count -= count;
+        let at = self.count.min(MOST);
+        // The lanes behind them must go the same way.
+        if count < L::COUNT {
+            for row in &mut self.rows {
+                let first = row[at];
+                row[at + count..].fill(first);
+            }
+        }
+        let [ox, oy, oz, dx, dy, dz, t, object, index, number] = &self.rows;
+        Group {
+            origin: Vec3s { x: L::load(&ox[at..]), y: L::load(&oy[at..]), z: L::load(&oz[at..]) },
+            direction: Vec3s { x: L::load(&dx[at..]), y: L::load(&dy[at..]), z: L::load(&dz[at..]) },
+            t_max: L::load(&t[at..]),
+            skip: Names { object: L::load(&object[at..]), index: L::load(&index[at..]) },
+            numbers: L::load(&number[at..]),
+            count,
+            is_row: false,
+        }
+    }
 }
 
 /// As much of a group as there is room for.

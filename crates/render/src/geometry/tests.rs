@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3, Vec3};
 use super::bvh::{Child, Kind};
 use super::kernel::{Plain, Shear, dominant, sphere, triangle, turned};
 use super::simd::{Lanes, Portable, Simd, Vec3s};
-use super::traverse::{Course, Flight, Nested};
+use super::traverse::{Flight, Nested};
 use super::*;
 use crate::sampler::hash;
 
@@ -68,9 +68,8 @@ impl Geometry {
     /// Improves `hit` by all that one ray meets, alone.
     fn trace<S: Simd>(&self, ray: &Ray, any: bool, hit: &mut Hit, scratch: &mut Scratch) {
         self.planes.iter().for_each(|plane| plane.intersect(ray, hit));
-        let flight: &mut Flight = &mut scratch.flights[0];
-        flight.begin(*ray, Course::new::<S>(ray.direction), (0.0, self.tree.root), *hit);
-        flight.fly::<S>(&self.tree, any, &mut Nested { flight: &mut scratch.inner, any });
+        let (mut flight, inner) = (Box::new(Flight::IDLE), &mut scratch.pool.inner);
+        flight.travel::<S>(ray, &self.tree, self.tree.root, *hit, &mut Nested { flight: inner, any });
         *hit = flight.best;
     }
 }
@@ -157,7 +156,7 @@ fn brute_mesh(ray: &Ray, mesh: &MeshShape, object: u32, best: &mut Hit) {
     for index in 0..mesh.triangles.len() {
         let id = Id { object, index: index as u32 };
         let corners = mesh.triangle_points(index).map(|corner| Vec3s::of(turned.map(|axis| corner[axis])));
-        let crossing = triangle(&shear, corners, Portable::splat(0.0), Portable::splat(best.t));
+        let crossing = triangle::<Portable, false>(&shear, corners, Portable::splat(0.0), Portable::splat(best.t));
         if let Some(crossing) = crossing.filter(|crossing| crossing.mask != 0 && id != ray.skip) {
             best.improve(Hit {
                 t: crossing.t.store()[0],
@@ -571,6 +570,37 @@ fn rays_that_leave_a_shape_with_a_formula_get_away_from_it() {
         }
         // The folds of a Julia set come as near to each other as one likes.
         assert!(met > 200 && stuck * 100 <= met, "{shape:?} of size {size}: {stuck} of {met}");
+    }
+}
+
+#[test]
+fn what_a_ray_meets_does_not_depend_on_the_others_of_its_batch() {
+    let mut random = Random(77);
+    let geometry = plan(|plan| plan.mesh(random_soup(&mut random, 2000, 0.1), &[here()]));
+    // From one place in all directions, as rays go that bounce off a surface; some end before they begin.
+    let all: Vec<Ray> = (0..400)
+        .map(|i| {
+            let (origin, direction) = (Vec3::splat(0.1) + random.point() * 0.05, random.point().normalize());
+            let t_max = if i % 11 == 0 { -1.0 } else { 0.3 + random.next() };
+            Ray { origin, direction, t_min: 0.0, t_max, skip: Id::NONE, time: None }
+        })
+        .collect();
+    let (mut scratch, mut hits, mut blocked) = (Scratch::default(), Hits::default(), Vec::new());
+    let mut trace = |rays: &[Ray]| {
+        let rows = rows(rays);
+        blocked.clear();
+        geometry.closest(rows.view(0.0), &mut hits, &mut scratch);
+        geometry.occluded(rows.view(0.0), &mut blocked, &mut scratch);
+        (0..rays.len()).map(|i| (bits(&hits.get(i)), blocked[i])).collect::<Vec<_>>()
+    };
+    let expected = trace(&all);
+    let met = expected.iter().filter(|(hit, _)| hit.3 != Id::NONE).count();
+    assert!((100..300).contains(&met), "{met} rays meet something");
+    for first in [0, 5, 100] {
+        for count in 1..80 {
+            let batch = first..first + count;
+            assert_eq!(trace(&all[batch.clone()]), expected[batch.clone()], "rays {batch:?}");
+        }
     }
 }
 

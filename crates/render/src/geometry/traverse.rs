@@ -3,11 +3,13 @@
 //! The hit that wins is the closest, and of equally close ones that of the smallest [`Id`]. It does not depend on the
 //! way through the tree: see [`kernel::triangle`] about the boxes of the leaves.
 
+use glam::Vec3;
+
 use super::analytic;
 use super::build::MAX_DEPTH;
 use super::bvh::{Child, Kind, Node, Octant};
 use super::kernel::{self, Crossing, Inverse, Plain, Shear, Slab};
-use super::packet;
+use super::packet::LEFT;
 use super::simd::{Simd, Vec3s};
 use super::{Hit, Id, Motions, Object, Ray};
 use crate::affine::Affine;
@@ -91,30 +93,11 @@ impl Tree {
 /// Most children that wait at a time: a node takes one from the stack and may add eight. Eight places more are written to.
 pub(super) const STACK: usize = MAX_DEPTH * 7 + 8 + 8;
 
+/// The same for a ray that goes on alone, above the stack of its packet and what that has left to it; and some, so that not
+/// all flights want the same sets of the cache.
+const ALONE: usize = 2 * STACK + LEFT + 16;
+
 const ROOM: &str = "the stack has room for eight more than ever wait";
-
-/// Room for the traversal of one thread; made once, because clearing it costs as much as a short ray.
-pub(crate) struct Scratch {
-    pub(super) packet: Box<packet::Stack>,
-    pub(super) flights: Box<[Flight; FLIGHTS]>,
-    pub(super) inner: Box<Flight>,
-    /// Rays that go on without a packet, and their courses.
-    pub(super) scattered: Vec<(u32, Course)>,
-}
-
-/// Rays that are on their way at a time.
-pub(super) const FLIGHTS: usize = 16;
-
-impl Default for Scratch {
-    fn default() -> Self {
-        Scratch {
-            packet: packet::stack(),
-            flights: Box::new([const { Flight::IDLE }; FLIGHTS]),
-            inner: Box::new(Flight::IDLE),
-            scattered: Vec::new(),
-        }
-    }
-}
 
 impl InstanceLeaf {
     /// `ray` in the space of the instance's tree. Distances along it stay what they are.
@@ -134,85 +117,116 @@ impl InstanceLeaf {
     }
 }
 
-/// What a ray's direction means to boxes and triangles.
+/// What boxes and primitives need to know of a ray, in one line of the cache: its origin, [`Inverse`] (to enter, to leave),
+/// slopes and scale of its [`Shear`], its direction and where it ends.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Line(pub [f32; 16]);
+
+impl Line {
+    #[inline(always)]
+    fn origin(&self) -> Vec3 {
+        let [x, y, z, ..] = self.0;
+        Vec3::new(x, y, z)
+    }
+
+    #[inline(always)]
+    fn inverse<S: Simd>(&self) -> Inverse<S> {
+        let [_, _, _, ex, ey, ez, lx, ly, lz, ..] = self.0;
+        Inverse { enter: Vec3s::of([ex, ey, ez]), leave: Vec3s::of([lx, ly, lz]) }
+    }
+
+    #[inline(always)]
+    fn direction(&self) -> Vec3 {
+        let [.., x, y, z, _] = self.0;
+        Vec3::new(x, y, z)
+    }
+}
+
+/// What else there is to know of a ray.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Course {
-    /// For [`Inverse`].
-    pub enter: [f32; 3],
-    pub leave: [f32; 3],
-    /// For [`Shear`].
-    pub slope: [f32; 2],
-    pub scale: f32,
     pub octant: Octant,
     /// The axis along which it is the longest.
     pub dominant: u32,
+    pub t_min: f32,
+    pub skip: Id,
+    pub time: Option<f32>,
+    /// Which of the caller's rays it is.
+    pub number: u32,
 }
 
-impl Course {
-    #[inline(always)]
-    pub fn new<S: Simd>(direction: glam::Vec3) -> Course {
-        let dominant = kernel::dominant(direction);
-        let (d, turned) = (direction.to_array(), kernel::turned(dominant));
-        let inverse = kernel::inverse(S::load(&[d[0], d[1], d[2], 1.0, 1.0, 1.0, 1.0, 1.0]));
-        let ([ex, ey, ez, ..], [lx, ly, lz, ..]) = (inverse.enter.store(), inverse.leave.store());
-        let [i, j, k] = [d[turned[0]], d[turned[1]], d[turned[2]]];
-        let [i, j, scale, ..] = S::load(&[i, j, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]).div(S::splat(k)).store();
-        let octant = Octant::new([d[0].is_sign_negative(), d[1].is_sign_negative(), d[2].is_sign_negative()]);
-        let dominant = dominant as u32;
-        Course { enter: [ex, ey, ez], leave: [lx, ly, lz], slope: [i, j], scale, octant, dominant }
-    }
+/// A ray as flights have it.
+#[inline(always)]
+fn course<S: Simd>(ray: &Ray) -> (Line, Course) {
+    let dominant = kernel::dominant(ray.direction);
+    let (o, d, turned) = (ray.origin, ray.direction.to_array(), kernel::turned(dominant));
+    let inverse = kernel::inverse(S::load(&[d[0], d[1], d[2], 1.0, 1.0, 1.0, 1.0, 1.0]));
+    let ([ex, ey, ez, ..], [lx, ly, lz, ..]) = (inverse.enter.store(), inverse.leave.store());
+    let [i, j, k] = [d[turned[0]], d[turned[1]], d[turned[2]]];
+    let [i, j, scale, ..] = S::load(&[i, j, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]).div(S::splat(k)).store();
+    let octant = Octant::new([d[0].is_sign_negative(), d[1].is_sign_negative(), d[2].is_sign_negative()]);
+    let line = Line([o.x, o.y, o.z, ex, ey, ez, lx, ly, lz, i, j, scale, d[0], d[1], d[2], ray.t_max]);
+    let &Ray { t_min, skip, time, .. } = ray;
+    (line, Course { octant, dominant: dominant as u32, t_min, skip, time, number: 0 })
 }
 
 /// A ray on its way: what the boxes and the primitives need to know of it, the best that it has met, and what it has
 /// still to look into.
 #[derive(Debug, Clone)]
+#[repr(C)]
 pub(super) struct Flight {
-    ray: Ray,
+    line: Line,
+    pub course: Course,
     pub best: Hit,
-    course: Course,
-    /// Which of the caller's rays it is.
-    pub number: u32,
     /// How many children wait, with what lies at the bottom of the stack.
     top: usize,
     /// Where they are entered.
-    near: [f32; STACK],
-    waiting: [u32; STACK],
+    near: [f32; ALONE],
+    waiting: [u32; ALONE],
 }
 
 impl Flight {
     /// On no way.
-    const IDLE: Flight = Flight {
-        ray: Ray {
-            origin: glam::Vec3::ZERO,
-            direction: glam::Vec3::ZERO,
-            t_min: 0.0,
-            t_max: 0.0,
-            skip: Id::NONE,
-            time: None,
-        },
+    pub const IDLE: Flight = Flight {
+        line: Line([0.0; 16]),
+        course: Course { octant: Octant(0), dominant: 0, t_min: 0.0, skip: Id::NONE, time: None, number: 0 },
         best: Hit::NONE,
-        course: Course {
-            enter: [0.0; 3],
-            leave: [0.0; 3],
-            slope: [0.0; 2],
-            scale: 0.0,
-            octant: Octant(0),
-            dominant: 0,
-        },
-        number: 0,
         top: 0,
-        near: [0.0; STACK],
-        waiting: [Child::NONE.code(); STACK],
+        near: [0.0; ALONE],
+        waiting: [Child::NONE.code(); ALONE],
     };
 
-    /// Sends off a ray that has already met `best`, below a child that it enters at `enter`.
+    /// Sends off a ray that has already met `best`, with nothing to look into yet.
     #[inline(always)]
-    pub fn begin(&mut self, ray: Ray, course: Course, (enter, child): (f32, Child), best: Hit) {
-        (self.ray, self.course, self.best) = (ray, course, best);
+    pub fn begin(&mut self, line: Line, course: Course, best: Hit) {
+        (self.line, self.course, self.best) = (line, course, best);
         // The bottom of the stack is reached when nothing waits.
         (self.near[0], self.waiting[0]) = (f32::NEG_INFINITY, Child::NONE.code());
-        (self.near[1], self.waiting[1]) = (enter, child.code());
-        self.top = 2;
+        self.top = 1;
+    }
+
+    /// Adds a child that the ray enters at `near`: it comes next.
+    #[inline(always)]
+    pub fn push(&mut self, near: f32, child: Child) {
+        (self.near[self.top], self.waiting[self.top]) = (near, child.code());
+        self.top += 1;
+    }
+
+    /// The ray itself.
+    #[inline(always)]
+    fn ray(&self) -> Ray {
+        let Course { t_min, skip, time, .. } = self.course;
+        Ray { origin: self.line.origin(), direction: self.line.direction(), t_min, t_max: self.line.0[15], skip, time }
+    }
+
+    /// Goes all the way through the tree below a root, or up to the first hit where any will do.
+    #[inline(always)]
+    pub fn travel<S: Simd>(&mut self, ray: &Ray, tree: &Tree, root: Child, best: Hit, instances: &mut impl Instances) {
+        let (line, course) = course::<S>(ray);
+        self.begin(line, course, best);
+        self.push(0.0, root);
+        self.fly::<S>(tree, instances);
     }
 
     /// What comes next; [`Child::NONE`] where nothing waits any more.
@@ -224,10 +238,9 @@ impl Flight {
     /// Puts the children of a node, which comes next, in its place.
     #[inline(always)]
     pub fn open<S: Simd>(&mut self, node: &Node) {
-        let Course { enter, leave, octant, .. } = self.course;
-        let inverse = Inverse::<S> { enter: Vec3s::of(enter), leave: Vec3s::of(leave) };
+        let octant = self.course.octant;
         let sides = octant.sides();
-        let slab = Slab { origin: Vec3s::splat(self.ray.origin), inverse };
+        let slab = Slab { origin: Vec3s::splat(self.line.origin()), inverse: self.line.inverse::<S>() };
         let (enter, leave) = kernel::slab(node.near(sides), node.far(sides), &slab);
         let limit = leave.min(S::splat(self.best.t));
         let at = self.top - 1;
@@ -246,9 +259,9 @@ impl Flight {
             Kind::Triangles => self.triangles::<S>(&tree.triangles[child.index()], enter),
             Kind::Spheres => self.spheres::<S>(&tree.spheres[child.index()], enter),
             Kind::Instance => {
-                instances.enter::<S>(tree, &tree.instances[child.index()], enter, &self.ray, &mut self.best)
+                instances.enter::<S>(tree, &tree.instances[child.index()], enter, &self.ray(), &mut self.best)
             }
-            Kind::Analytic => tree.analytic.meet(child.index(), &self.ray, enter, &tree.motions, &mut self.best),
+            Kind::Analytic => tree.analytic.meet(child.index(), &self.ray(), enter, &tree.motions, &mut self.best),
         }
         known != (self.best.t, self.best.id)
     }
@@ -279,15 +292,14 @@ impl Flight {
         self.top = to;
     }
 
-    /// Goes all the way; with `any`, up to the first hit.
     #[inline(always)]
-    pub fn fly<S: Simd>(&mut self, tree: &Tree, any: bool, instances: &mut impl Instances) {
+    fn fly<S: Simd>(&mut self, tree: &Tree, instances: &mut impl Instances) {
         while self.next() != Child::NONE {
             if self.near[self.top - 1] > self.best.t {
                 self.top -= 1;
             } else if self.next().is_node() {
                 self.open::<S>(&tree.nodes[self.next().index()]);
-            } else if self.meet::<S>(tree, instances) && any {
+            } else if self.meet::<S>(tree, instances) && instances.any() {
                 return;
             }
         }
@@ -296,28 +308,29 @@ impl Flight {
     #[inline(always)]
     fn triangles<S: Simd>(&mut self, block: &TriangleBlock, enter: f32) {
         let turned = kernel::turned(self.course.dominant as usize);
-        let origin = self.ray.origin.to_array();
+        let [x, y, z, _, _, _, _, _, _, i, j, scale, ..] = self.line.0;
+        let origin = [x, y, z];
         let shear = Shear {
             origin: Vec3s::of([origin[turned[0]], origin[turned[1]], origin[turned[2]]]),
-            slope: (S::splat(self.course.slope[0]), S::splat(self.course.slope[1])),
-            scale: S::splat(self.course.scale),
-            t_min: S::splat(self.ray.t_min),
+            slope: (S::splat(i), S::splat(j)),
+            scale: S::splat(scale),
+            t_min: S::splat(self.course.t_min),
         };
         if let Some(crossing) = block.cross(&shear, turned, enter, self.best.t) {
-            crossing.improve(&mut self.best, &block.ids, self.ray.skip);
+            crossing.improve(&mut self.best, &block.ids, self.course.skip);
         }
     }
 
     #[inline(always)]
     fn spheres<S: Simd>(&mut self, block: &SphereBlock, enter: f32) {
         let plain = Plain {
-            origin: Vec3s::splat(self.ray.origin),
-            direction: Vec3s::splat(self.ray.direction),
-            t_min: S::splat(self.ray.t_min),
+            origin: Vec3s::splat(self.line.origin()),
+            direction: Vec3s::splat(self.line.direction()),
+            t_min: S::splat(self.course.t_min),
         };
         let (centers, radii) = (Vec3s::load(&block.centers), S::load(&block.radii));
         if let Some(crossing) = kernel::sphere(&plain, centers, radii, S::splat(enter), S::splat(self.best.t)) {
-            crossing.improve(&mut self.best, &block.ids, self.ray.skip);
+            crossing.improve(&mut self.best, &block.ids, self.course.skip);
         }
     }
 }
@@ -328,7 +341,7 @@ impl TriangleBlock {
     pub fn cross<S: Simd>(&self, shear: &Shear<S>, turned: [usize; 3], enter: f32, t_max: f32) -> Option<Crossing<S>> {
         let [a, b, c] = &self.vertices;
         let corners = [load(a, turned), load(b, turned), load(c, turned)];
-        kernel::triangle(shear, corners, S::splat(enter), S::splat(t_max))
+        kernel::triangle::<S, false>(shear, corners, S::splat(enter), S::splat(t_max))
     }
 }
 
@@ -341,6 +354,8 @@ fn load<S: Simd>(rows: &[[f32; 8]; 3], [i, j, k]: [usize; 3]) -> Vec3s<S> {
 /// What happens at the leaf of an instance. (A trait and not a closure: a closure is compiled without the instruction
 /// set of the function it stands in, and would call every intrinsic out of line.)
 pub(super) trait Instances {
+    /// Whether anything that is met will do.
+    fn any(&self) -> bool;
     fn enter<S: Simd>(&mut self, tree: &Tree, leaf: &InstanceLeaf, enter: f32, ray: &Ray, best: &mut Hit);
 }
 
@@ -353,12 +368,16 @@ pub(super) struct Nested<'a> {
 
 impl Instances for Nested<'_> {
     #[inline(always)]
+    fn any(&self) -> bool {
+        self.any
+    }
+
+    #[inline(always)]
     fn enter<S: Simd>(&mut self, tree: &Tree, leaf: &InstanceLeaf, enter: f32, ray: &Ray, best: &mut Hit) {
         // Hits as far as the best so far may still win by their object.
         let farthest = Hit { t: best.t.next_up(), ..Hit::NONE };
         let local = leaf.localize(ray, &tree.motions);
-        self.flight.begin(local, Course::new::<S>(local.direction), (0.0, leaf.root), farthest);
-        self.flight.fly::<S>(tree, self.any, &mut NoInstances);
+        self.flight.travel::<S>(&local, tree, leaf.root, farthest, &mut NoInstances { any: self.any });
         let found = self.flight.best;
         if found.id != Id::NONE {
             best.improve(Hit { t: found.t.max(enter), id: Id { object: leaf.object, ..found.id }, ..found });
@@ -367,9 +386,16 @@ impl Instances for Nested<'_> {
 }
 
 /// Trees of instances hold no instances.
-struct NoInstances;
+struct NoInstances {
+    any: bool,
+}
 
 impl Instances for NoInstances {
+    #[inline(always)]
+    fn any(&self) -> bool {
+        self.any
+    }
+
     #[inline(always)]
     fn enter<S: Simd>(&mut self, _: &Tree, _: &InstanceLeaf, _: f32, _: &Ray, _: &mut Hit) {}
 }

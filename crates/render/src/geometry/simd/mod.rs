@@ -47,6 +47,10 @@ pub(crate) trait Lanes: Copy {
     }
     /// Lane i of `yes` where bit i of `mask` is set, else of `no`.
     fn select(mask: u32, yes: Self, no: Self) -> Self;
+    /// What is in lane i of sixteen rows, as line i of the result; as many lines as there are lanes mean anything.
+    fn lines(rows: [Self; 16]) -> [[f32; 16]; 16];
+    /// The lanes of `mask`, one after the other from the first on; the others hold anything.
+    fn compress(self, mask: u32) -> Self;
     /// Bit i is set where lane i of `self` has the bits of that of `other`.
     fn same_bits(self, other: Self) -> u32;
     /// Writes the lanes to the first of the values, of which there must be enough.

@@ -94,6 +94,25 @@ impl Lanes for Portable {
         Portable(std::array::from_fn(|i| if mask >> i & 1 != 0 { yes.0[i] } else { no.0[i] }))
     }
     #[inline(always)]
+    fn lines(rows: [Self; 16]) -> [[f32; 16]; 16] {
+        let mut lines = [[0.0; 16]; 16];
+        for (i, row) in rows.iter().enumerate() {
+            for (line, &value) in lines.iter_mut().zip(&row.0) {
+                line[i] = value;
+            }
+        }
+        lines
+    }
+    #[inline(always)]
+    fn compress(self, mask: u32) -> Self {
+        let (mut out, mut count) = ([0.0; 8], 0);
+        for i in 0..8 {
+            out[count & 7] = self.0[i];
+            count += (mask >> i & 1) as usize;
+        }
+        Portable(out)
+    }
+    #[inline(always)]
     fn same_bits(self, other: Self) -> u32 {
         self.mask(other, |a, b| a.to_bits() == b.to_bits())
     }

@@ -106,6 +106,33 @@ macro_rules! arithmetic256 {
         );
 
         #[inline(always)]
+        fn lines(rows: [Self; 16]) -> [[f32; 16]; 16] {
+            let mut lines = [[0.0; 16]; 16];
+            for (half, rows) in rows.chunks_exact(8).enumerate() {
+                // Four rows in each quarter of a register, then of eight.
+                let mut fours = [rows[0].0; 8];
+                for (i, four) in rows.chunks_exact(4).enumerate() {
+                    let [a, b, c, d] = [four[0].0, four[1].0, four[2].0, four[3].0];
+                    unsafe {
+                        let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+                        fours[4 * i] = _mm256_shuffle_ps::<0x44>(ab, cd);
+                        fours[4 * i + 1] = _mm256_shuffle_ps::<0xee>(ab, cd);
+                        let (ab, cd) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+                        fours[4 * i + 2] = _mm256_shuffle_ps::<0x44>(ab, cd);
+                        fours[4 * i + 3] = _mm256_shuffle_ps::<0xee>(ab, cd);
+                    }
+                }
+                for j in 0..4 {
+                    let (a, b) = (fours[j], fours[4 + j]);
+                    let (low, high) =
+                        unsafe { (_mm256_permute2f128_ps::<0x20>(a, b), _mm256_permute2f128_ps::<0x31>(a, b)) };
+                    lines[j][8 * half..][..8].copy_from_slice(&Self(low).store());
+                    lines[4 + j][8 * half..][..8].copy_from_slice(&Self(high).store());
+                }
+            }
+            lines
+        }
+        #[inline(always)]
         fn copysign(self, sign: Self) -> Self {
             unsafe {
                 let bit = _mm256_set1_ps(-0.0);
@@ -156,6 +183,13 @@ impl Lanes for Avx2 {
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
             let set = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(mask as i32), bits), bits);
             Avx2(_mm256_blendv_ps(no.0, yes.0, _mm256_castsi256_ps(set)))
+        }
+    }
+    #[inline(always)]
+    fn compress(self, mask: u32) -> Self {
+        unsafe {
+            let packed = _mm256_loadu_si256(PACKED[mask as usize & 255].as_ptr().cast());
+            Avx2(_mm256_permutevar8x32_ps(self.0, packed))
         }
     }
     #[inline(always)]
@@ -251,6 +285,10 @@ impl Lanes for Avx512 {
         Avx512(unsafe { _mm256_mask_blend_ps(mask as u8, no.0, yes.0) })
     }
     #[inline(always)]
+    fn compress(self, mask: u32) -> Self {
+        Avx512(unsafe { _mm256_maskz_compress_ps(mask as u8, self.0) })
+    }
+    #[inline(always)]
     fn same_bits(self, other: Self) -> u32 {
         unsafe { u32::from(_mm256_cmpeq_epi32_mask(_mm256_castps_si256(self.0), _mm256_castps_si256(other.0))) }
     }
@@ -302,6 +340,35 @@ impl Lanes for Wide {
     );
 
     #[inline(always)]
+    fn lines(rows: [Self; 16]) -> [[f32; 16]; 16] {
+        // Four rows in each quarter of a register.
+        let mut fours = [rows[0].0; 16];
+        for (i, four) in rows.chunks_exact(4).enumerate() {
+            let [a, b, c, d] = [four[0].0, four[1].0, four[2].0, four[3].0];
+            unsafe {
+                let (ab, cd) = (_mm512_unpacklo_ps(a, b), _mm512_unpacklo_ps(c, d));
+                fours[4 * i] = _mm512_shuffle_ps::<0x44>(ab, cd);
+                fours[4 * i + 1] = _mm512_shuffle_ps::<0xee>(ab, cd);
+                let (ab, cd) = (_mm512_unpackhi_ps(a, b), _mm512_unpackhi_ps(c, d));
+                fours[4 * i + 2] = _mm512_shuffle_ps::<0x44>(ab, cd);
+                fours[4 * i + 3] = _mm512_shuffle_ps::<0xee>(ab, cd);
+            }
+        }
+        let mut lines = [[0.0; 16]; 16];
+        for j in 0..4 {
+            let [a, b, c, d] = [fours[j], fours[4 + j], fours[8 + j], fours[12 + j]];
+            unsafe {
+                let (even, odd) = (_mm512_shuffle_f32x4::<0x88>(a, b), _mm512_shuffle_f32x4::<0xdd>(a, b));
+                let (next_even, next_odd) = (_mm512_shuffle_f32x4::<0x88>(c, d), _mm512_shuffle_f32x4::<0xdd>(c, d));
+                lines[j] = Wide(_mm512_shuffle_f32x4::<0x88>(even, next_even)).store();
+                lines[4 + j] = Wide(_mm512_shuffle_f32x4::<0x88>(odd, next_odd)).store();
+                lines[8 + j] = Wide(_mm512_shuffle_f32x4::<0xdd>(even, next_even)).store();
+                lines[12 + j] = Wide(_mm512_shuffle_f32x4::<0xdd>(odd, next_odd)).store();
+            }
+        }
+        lines
+    }
+    #[inline(always)]
     fn copysign(self, sign: Self) -> Self {
         unsafe {
             let bit = _mm512_set1_ps(-0.0);
@@ -327,6 +394,10 @@ impl Lanes for Wide {
     #[inline(always)]
     fn select(mask: u32, yes: Self, no: Self) -> Self {
         Wide(unsafe { _mm512_mask_blend_ps(mask as u16, no.0, yes.0) })
+    }
+    #[inline(always)]
+    fn compress(self, mask: u32) -> Self {
+        Wide(unsafe { _mm512_maskz_compress_ps(mask as u16, self.0) })
     }
     #[inline(always)]
     fn same_bits(self, other: Self) -> u32 {
