@@ -104,7 +104,7 @@ pub fn tuple(shape: &[usize]) -> String {
     }
 }
 
-/// An array for results, of the shape of the points without their last axis, with these axes added: see [`array`].
+/// An array for results, of the shape of the points without their last axis, with these axes added: see [`array()`].
 pub fn results<'py, T: Element>(
     py: Python<'py>,
     points: &[usize],
