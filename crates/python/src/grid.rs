@@ -17,7 +17,7 @@ const PIECE: usize = 1 << 16;
 
 /// Points that are every combination of the coordinates along each axis, in single precision.
 ///
-/// `Grid(x, y, z)` holds the points (x[i], y[j], z[k]); what is evaluated there has the shape (len(z), len(y), len(x)): rows
+/// `Grid(x, y, z)` holds the points `(x[i], y[j], z[k])`; what is evaluated there has the shape `(len(z), len(y), len(x))`: rows
 /// along x, as pictures have them. One axis to four. A noise on a grid needs no array of points, and takes a fraction of the time
 /// where the grid is finer than the cells of the noise (there it may differ from the noise at `points()` by rounding, by 2e-6 times the sum
 /// of the octaves' amplitudes at most, by ten times that for "ridged" and "hybrid").
