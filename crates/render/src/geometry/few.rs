@@ -8,11 +8,11 @@ use glam::Vec3;
 
 use super::bvh::{Child, Kind};
 use super::packet::Packet;
-use super::rays::{Group, Hits, RayView, group, group_bits};
+use super::rays::{Group, RayView, group, group_bits};
 use super::simd::{Kernel, Lanes, Simd, Vec3s};
-use super::stream::{self, Outcome};
+use super::stream::Outcome;
 use super::traverse::{SphereBlock, Tree};
-use super::{Id, PlaneShape};
+use super::{Hit, Id, PlaneShape};
 
 /// Rays of a group: two rows of a tile with four samples each.
 const GROUP: usize = 256;
@@ -55,59 +55,34 @@ impl<'a> Few<'a> {
     }
 }
 
-/// The first hit of every ray, as a kernel.
-pub(super) struct Closest<'a> {
+/// What every ray meets, as a kernel.
+pub(super) struct Meet<'a, O> {
     pub few: Few<'a>,
     pub rays: RayView<'a>,
-    pub hits: &'a mut Hits,
+    pub outcome: O,
 }
 
-impl Kernel for Closest<'_> {
+impl<O: Outcome> Kernel for Meet<'_, O> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self) {
-        let Closest { few, rays, hits } = self;
+        let Meet { few, rays, mut outcome } = self;
         for first in (0..rays.len()).step_by(GROUP) {
             let (end, slots) = few.look::<S>(rays, first);
-            for start in (first..end).step_by(S::Wide::COUNT) {
-                let group = Group::row(&rays, start);
-                let mut packet = Packet::<S::Wide, S>::new::<stream::Closest<'_>>(&group, rays.t_min);
-                few.meet::<stream::Closest<'_>, _, _>(&mut packet, slots);
-                packet.store(start, hits);
-            }
-        }
-    }
-}
-
-/// Whether anything is in the way of every ray, as a kernel.
-pub(super) struct Occluded<'a> {
-    pub few: Few<'a>,
-    pub rays: RayView<'a>,
-    pub blocked: &'a mut [bool],
-}
-
-impl Kernel for Occluded<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self) {
-        let Occluded { few, rays, blocked } = self;
-        for first in (0..rays.len()).step_by(GROUP) {
-            let (end, slots) = few.look::<S>(rays, first);
-            if slots == 0 && few.planes.is_empty() {
-                for (blocked, &t_max) in blocked[first..end].iter_mut().zip(&rays.t_max[first..end]) {
-                    *blocked = t_max < 0.0 || t_max.is_nan();
+            if O::ANY && slots == 0 && few.planes.is_empty() {
+                for (ray, &t_max) in (first..end).zip(&rays.t_max[first..end]) {
+                    outcome.take(ray, &Hit::NONE, t_max < 0.0 || t_max.is_nan());
                 }
                 continue;
             }
             for start in (first..end).step_by(S::Wide::COUNT) {
                 let group = Group::row(&rays, start);
-                let mut packet = Packet::<S::Wide, S>::new::<stream::Blocked<'_>>(&group, rays.t_min);
-                if !packet.is_dead() {
-                    few.meet::<stream::Blocked<'_>, _, _>(&mut packet, slots);
+                let mut packet = Packet::<S::Wide, S>::new::<O>(&group, rays.t_min);
+                if !O::ANY || !packet.is_dead() {
+                    few.meet::<O, _, _>(&mut packet, slots);
                 }
-                packet.store_blocked(&mut blocked[start..]);
+                outcome.take_row(start, &packet);
             }
         }
     }

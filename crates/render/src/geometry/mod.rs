@@ -29,6 +29,7 @@ use crate::motion::Motion;
 use few::Few;
 pub(crate) use plan::{Placement, Plan};
 pub(crate) use rays::{Hits, Ids, Met, RayView, Rays, Rows, Run, group, padded, put_group, spread};
+use stream::Outcome;
 pub(crate) use stream::Scratch;
 pub(crate) use surface::{Surface, Surfaces};
 
@@ -278,53 +279,36 @@ impl Geometry {
     }
 
     fn closest_at(&self, level: Level, rays: RayView<'_>, hits: &mut Hits, scratch: &mut Scratch) {
-        match Few::of(&self.tree, &self.planes) {
-            Some(few) => simd::run_at(level, few::Closest { few, rays, hits }),
-            None => simd::run_at(level, Closest { geometry: self, rays, hits, scratch }),
-        }
+        self.meet(level, rays, scratch, stream::Closest(hits));
     }
 
     fn occluded_at(&self, level: Level, rays: RayView<'_>, blocked: &mut [bool], scratch: &mut Scratch) {
+        self.meet(level, rays, scratch, stream::Blocked(blocked));
+    }
+
+    fn meet<O: Outcome>(&self, level: Level, rays: RayView<'_>, scratch: &mut Scratch, outcome: O) {
         match Few::of(&self.tree, &self.planes) {
-            Some(few) => simd::run_at(level, few::Occluded { few, rays, blocked }),
-            None => simd::run_at(level, Occluded { geometry: self, rays, blocked, scratch }),
+            Some(few) => simd::run_at(level, few::Meet { few, rays, outcome }),
+            None => simd::run_at(level, Meet { geometry: self, rays, scratch, outcome }),
         }
     }
 }
 
-/// [`Geometry::closest`] by the tree, as a kernel.
-struct Closest<'a> {
+/// What every ray meets by the tree, as a kernel.
+struct Meet<'a, O> {
     geometry: &'a Geometry,
     rays: RayView<'a>,
-    hits: &'a mut Hits,
     scratch: &'a mut Scratch,
+    outcome: O,
 }
 
-impl simd::Kernel for Closest<'_> {
+impl<O: Outcome> simd::Kernel for Meet<'_, O> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: simd::Simd>(self) {
-        let Closest { geometry, rays, hits, scratch } = self;
-        stream::trace::<S, _>(geometry, rays, scratch, &mut stream::Closest(hits));
-    }
-}
-
-/// [`Geometry::occluded`] by the tree, as a kernel.
-struct Occluded<'a> {
-    geometry: &'a Geometry,
-    rays: RayView<'a>,
-    blocked: &'a mut [bool],
-    scratch: &'a mut Scratch,
-}
-
-impl simd::Kernel for Occluded<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: simd::Simd>(self) {
-        let Occluded { geometry, rays, blocked, scratch } = self;
-        stream::trace::<S, _>(geometry, rays, scratch, &mut stream::Blocked(blocked));
+        let Meet { geometry, rays, scratch, mut outcome } = self;
+        stream::trace::<S, _>(geometry, rays, scratch, &mut outcome);
     }
 }
 
