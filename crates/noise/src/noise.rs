@@ -173,10 +173,7 @@ impl Noise {
             return;
         }
         // (What most callers want, at once: of short slices the way here would be a tenth.)
-        let done = match &points[..] {
-            [x, y, z] if self.has_kernel => simd::sum_improved(level, &self.tables, None, [x, y, z], [&mut *values]),
-            _ => 0,
-        };
+        let done = self.sum_fast(level, None, &points, [&mut *values]);
         if done < values.len() {
             let rest = points.map(|axis| &axis[done..]);
             Octave { noise: self, frequency: 1.0 }.fill(level, &rest, &mut values[done..], &mut []);
@@ -241,6 +238,7 @@ impl Noise {
     }
 
     /// The sums (without terms: the noise itself) at the first points by a kernel made by hand, if there is one for this noise; returns how many.
+    #[inline(always)]
     pub(crate) fn sum_fast<const N: usize>(
         &self,
         level: Level,

@@ -12,7 +12,7 @@ use super::axis::{Axis, PADDING};
 use crate::basis::{Basis, Tables, hash};
 use crate::noise::Noise;
 use crate::number::{Dual, Integer, Real};
-use crate::simd::{Vector, Wide};
+use crate::simd::{Vector, Wide, copy_away};
 use crate::sum::{Combine, Partial};
 
 /// An octave of a sum on a grid.
@@ -73,13 +73,13 @@ impl Wide for Rows<'_> {
                     (combine, _) => add::<V, LANES, 1>(combine, &states, y, width, values),
                 };
                 if away {
-                    V::copy_away(&buffer[..done * width], &mut plane[..done * width]);
+                    copy_away::<V, LANES>(&buffer[..done * width], &mut plane[..done * width]);
                 }
                 y += done;
             }
         }
         if away {
-            V::after_copies();
+            V::after_stores_away();
         }
     }
 }

@@ -384,14 +384,27 @@ pub(crate) trait Vector<const LANES: usize>: Real {
     fn splat(value: f32) -> Self;
     fn load_int(lanes: &[i32; LANES]) -> Self::Int;
     fn store_int(integers: Self::Int, lanes: &mut [i32; LANES]);
-    /// Copies numbers to where they are not needed soon: past the caches, if the machine can. [`Vector::after_copies`] ends it.
-    fn copy_away(from: &[f32], to: &mut [f32]) {
-        to.copy_from_slice(from);
+    /// [`Vector::store`] past the caches, if the machine can; `lanes` are aligned to their size.
+    fn store_away(self, lanes: &mut [f32; LANES]) {
+        self.store(lanes);
     }
-    /// Makes what was copied away visible to other threads.
-    fn after_copies() {}
+    /// Makes what was stored away visible to other threads.
+    fn after_stores_away() {}
     /// The window's numbers at these places, which are below `LANES`.
     fn expand(window: &[f32; LANES], places: Self::Int) -> Self;
+}
+
+/// Copies numbers to where they are not needed soon; [`Vector::after_stores_away`] ends it.
+#[inline(always)]
+pub(crate) fn copy_away<V: Vector<LANES>, const LANES: usize>(from: &[f32], to: &mut [f32]) {
+    let unaligned = to.as_ptr().align_offset(size_of::<[f32; LANES]>()).min(to.len());
+    let ((first, from), (head, to)) = (from.split_at(unaligned), to.split_at_mut(unaligned));
+    let ((from, last), (body, tail)) = (from.as_chunks(), to.as_chunks_mut());
+    head.copy_from_slice(first);
+    for (to, from) in body.iter_mut().zip(from) {
+        V::load(from).store_away(to);
+    }
+    tail.copy_from_slice(last);
 }
 
 impl Vector<1> for f32 {

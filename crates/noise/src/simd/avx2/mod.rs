@@ -279,20 +279,11 @@ impl Vector<8> for F32x8 {
         unsafe { _mm256_storeu_si256(lanes.as_mut_ptr().cast(), integers.0) }
     }
     #[inline(always)]
-    fn copy_away(from: &[f32], to: &mut [f32]) {
-        assert_eq!(from.len(), to.len());
-        // SAFETY: vectors are stored where the compiler found room for aligned ones, and read where as many numbers are.
-        let (head, body, tail) = unsafe { to.align_to_mut::<__m256>() };
-        let (first, rest) = from.split_at(head.len());
-        let (middle, last) = rest.split_at(body.len() * 8);
-        head.copy_from_slice(first);
-        for (to, from) in body.iter_mut().zip(middle.as_chunks::<8>().0) {
-            unsafe { _mm256_stream_ps((to as *mut __m256).cast(), _mm256_loadu_ps(from.as_ptr())) };
-        }
-        tail.copy_from_slice(last);
+    fn store_away(self, lanes: &mut [f32; 8]) {
+        unsafe { _mm256_stream_ps(lanes.as_mut_ptr(), self.0) }
     }
     #[inline(always)]
-    fn after_copies() {
+    fn after_stores_away() {
         unsafe { _mm_sfence() }
     }
     #[inline(always)]

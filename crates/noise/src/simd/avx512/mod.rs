@@ -294,20 +294,11 @@ impl Vector<16> for F32x16 {
         unsafe { _mm512_storeu_si512(lanes.as_mut_ptr().cast(), integers.0) }
     }
     #[inline(always)]
-    fn copy_away(from: &[f32], to: &mut [f32]) {
-        assert_eq!(from.len(), to.len());
-        // SAFETY: vectors are stored where the compiler found room for aligned ones, and read where as many numbers are.
-        let (head, body, tail) = unsafe { to.align_to_mut::<__m512>() };
-        let (first, rest) = from.split_at(head.len());
-        let (middle, last) = rest.split_at(body.len() * 16);
-        head.copy_from_slice(first);
-        for (to, from) in body.iter_mut().zip(middle.as_chunks::<16>().0) {
-            unsafe { _mm512_stream_ps((to as *mut __m512).cast(), _mm512_loadu_ps(from.as_ptr())) };
-        }
-        tail.copy_from_slice(last);
+    fn store_away(self, lanes: &mut [f32; 16]) {
+        unsafe { _mm512_stream_ps(lanes.as_mut_ptr(), self.0) }
     }
     #[inline(always)]
-    fn after_copies() {
+    fn after_stores_away() {
         unsafe { _mm_sfence() }
     }
     #[inline(always)]
