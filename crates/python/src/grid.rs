@@ -1,16 +1,13 @@
 //! `jaspe.noise.Grid`: points that are every combination of coordinates along each axis.
 
-use std::sync::atomic::Ordering;
-
 use jaspe_noise::{Field, Raster};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods as _};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use rayon::prelude::*;
 
-use crate::{points, work};
+use crate::points;
 
 /// So many points a thread takes on at a time, if planes are not larger.
 const PIECE: usize = 1 << 16;
@@ -114,24 +111,12 @@ impl Grid {
                 let raster = Raster::new(field, self.axes.clone());
                 let plane = raster.plane_len();
                 let planes = PIECE.div_ceil(plane);
-                let fill = |(piece, values): (usize, &mut [f32])| {
+                let count = values.len();
+                let pieces = values.chunks_mut(planes * plane).enumerate().collect();
+                points::spread(py, pieces, count, |(piece, values): (usize, &mut [f32])| {
                     let first = piece * planes;
                     raster.fill(first..first + values.len() / plane, values);
-                };
-                if values.len() <= PIECE {
-                    fill((0, values));
-                } else {
-                    let pool = work::pool()?;
-                    let pieces = values.par_chunks_mut(planes * plane).enumerate();
-                    work::watched(py, |stopped| {
-                        let fill = |piece| {
-                            if !stopped.load(Ordering::Relaxed) {
-                                fill(piece);
-                            }
-                        };
-                        pool.install(|| pieces.for_each(fill));
-                    })?;
-                }
+                })?;
             }
         }
         Ok(values.into_any())

@@ -235,18 +235,27 @@ fn each_piece<U: Send>(
         values: values.next().unwrap_or_default(),
         more: more.next().unwrap_or_default(),
     });
+    spread(py, pieces.collect(), point_count, evaluate)
+}
+
+/// Does pieces of so many points together on all cores and without the interpreter's lock; Ctrl-C ends it.
+pub fn spread<P: Send>(
+    py: Python<'_>,
+    pieces: Vec<P>,
+    point_count: usize,
+    evaluate: impl Fn(P) + Sync,
+) -> PyResult<()> {
     if point_count <= PIECE {
-        pieces.for_each(evaluate);
+        pieces.into_iter().for_each(evaluate);
         return Ok(());
     }
     let pool = work::pool()?;
-    let pieces: Vec<Piece<'_, U>> = pieces.collect();
     if point_count <= SHORT {
         py.detach(|| pool.install(|| pieces.into_par_iter().for_each(&evaluate)));
         return py.check_signals();
     }
     work::watched(py, |stopped| {
-        let evaluate = |piece: Piece<'_, U>| {
+        let evaluate = |piece: P| {
             if !stopped.load(Ordering::Relaxed) {
                 evaluate(piece);
             }
