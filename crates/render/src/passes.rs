@@ -7,6 +7,7 @@
 //! Between two waves a rendering may be paused and its state saved: which pass it is in, how many waves of each tile are
 //! done, and the sums so far. From there it goes on to the same bits.
 
+use std::cmp::Reverse;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -212,9 +213,15 @@ impl<'a, R: Rules> Job<'a, R> {
     fn pass(&self, state: &mut State, pass: Pass, stats: &mut Stats) -> Result<(), Cancelled> {
         loop {
             let State { tiles, film, .. } = &mut *state;
-            let left = tiles.par_iter_mut().filter(|tile| !tile.is_finished());
-            let gathered = left.map(|tile| self.in_room(|room| self.work(tile, pass, film, room)));
-            *stats = stats.plus(gathered.reduce(Stats::default, Stats::plus));
+            let mut left: Vec<&mut Tile> = tiles.iter_mut().filter(|tile| !tile.is_finished()).collect();
+            // Those with little to do fill what is left of the time in the end.
+            left.sort_by_key(|tile| Reverse(tile.active_count()));
+            let gathered = threads::deal(left.into_iter(), |tiles| {
+                self.in_room(|room| {
+                    tiles.map(|tile| self.work(tile, pass, film, room)).fold(Stats::default(), Stats::plus)
+                })
+            });
+            *stats = gathered.into_iter().fold(*stats, Stats::plus);
             // Asked in this order, whoever is cancelled in between gets his checkpoint.
             let cancelled = self.observer.cancelled();
             if self.observer.wants_checkpoint() {

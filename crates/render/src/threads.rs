@@ -2,6 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// Threads that nobody uses, and how many were asked for. A process that is the copy of another has none of its threads, so
@@ -36,4 +37,16 @@ pub(crate) fn run<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Se
         // No threads to be had: work goes on in this one's own pool.
         Err(_) => work(),
     }
+}
+
+/// Deals items out to the threads of this pool, one by one and in order, so that all end together, however long each item
+/// takes. `work` is called with the items of one thread; what its calls return comes in no order.
+pub(crate) fn deal<I: Send, T: Send>(
+    items: impl Iterator<Item = I> + Send,
+    work: impl Fn(&mut dyn Iterator<Item = I>) -> T + Sync,
+) -> Vec<T> {
+    let items = Mutex::new(items);
+    let next = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let hands = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
+    hands.map(|_| work(&mut std::iter::from_fn(next))).collect()
 }

@@ -2,6 +2,7 @@
 //! "Realistic Image Synthesis Using Photon Mapping", ch. 6 and 7).
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use super::photons::{self, Keep, Photon, Senders};
 
@@ -123,21 +124,20 @@ impl Crowds {
                 crowds.near[cell] = (crowds.near[cell] + 1).min(LEAST as u8);
             }
         }
-        for (axis, step) in [1, size[0], size[0] * size[1]].into_iter().enumerate() {
-            crowds.widen(axis, step);
-        }
+        // To every cell its neighbours are added along its row, across the rows of its layer, and from layer to layer.
+        let (row, layer) = (size[0], size[0] * size[1]);
+        crowds.near.par_chunks_mut(layer).for_each(|near| {
+            let mut before = near.to_vec();
+            near.chunks_mut(row).zip(before.chunks(row)).for_each(|(near, before)| widen(near, before, 1));
+            before.copy_from_slice(near);
+            widen(near, &before, row);
+        });
+        let before = crowds.near.clone();
+        crowds.near.par_chunks_mut(layer).enumerate().for_each(|(z, near)| {
+            let others = [z.checked_sub(1), Some(z + 1)].into_iter().flatten();
+            others.filter_map(|z| before.chunks(layer).nth(z)).for_each(|other| add(near, other));
+        });
         crowds
-    }
-
-    /// Adds to every cell its neighbours along an axis.
-    fn widen(&mut self, axis: usize, step: usize) {
-        let before = self.near.clone();
-        for (i, near) in self.near.iter_mut().enumerate() {
-            let place = i / step % self.size[axis];
-            let below = if place > 0 { before[i - step] } else { 0 };
-            let above = if place + 1 < self.size[axis] { before[i + step] } else { 0 };
-            *near = (*near + below + above).min(LEAST as u8);
-        }
     }
 
     fn cell(&self, point: Vec3) -> Option<usize> {
@@ -152,6 +152,17 @@ impl Crowds {
     fn is_near(&self, point: Vec3) -> bool {
         self.cell(point).is_some_and(|cell| usize::from(self.near[cell]) >= LEAST)
     }
+}
+
+/// Adds to every cell of a row or layer those a step before and after it, as they were.
+fn widen(near: &mut [u8], before: &[u8], step: usize) {
+    add(&mut near[step..], before);
+    add(near, &before[step..]);
+}
+
+/// Adds counts, up to [`LEAST`].
+fn add(near: &mut [u8], others: &[u8]) {
+    near.iter_mut().zip(others).for_each(|(near, other)| *near = (*near + other).min(LEAST as u8));
 }
 
 /// Sorts photons into a balanced tree, split along the longest side of each range.

@@ -6,7 +6,6 @@
 use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3;
-use rayon::prelude::*;
 
 use super::halton::halton;
 use super::point::Point;
@@ -19,6 +18,7 @@ use crate::material::luminance;
 use crate::math;
 use crate::options::Observer;
 use crate::sampler::SampleKey;
+use crate::threads;
 use crate::wave::{RayKind, Samples, Workspace, World};
 
 /// A photon where it came to a matte surface.
@@ -63,27 +63,28 @@ pub(crate) fn send(senders: &Senders<'_>, keep: Keep, first: u32, count: u32) ->
     if sender.total <= 0.0 {
         return Vec::new();
     }
-    let starts: Vec<u32> = (0..count).step_by(CHUNK as usize).collect();
-    let chunks: Vec<Vec<Photon>> = starts
-        .into_par_iter()
-        .map_init(Box::<Workspace<Sender<'_>>>::default, |workspace, start| {
-            if observer.cancelled() {
-                return Vec::new();
-            }
-            workspace.begin();
+    let starts = (0..count).step_by(CHUNK as usize);
+    let mut chunks = threads::deal(starts, |starts| {
+        let mut workspace = Box::<Workspace<Sender<'_>>>::default();
+        workspace.begin();
+        let mut chunks = Vec::new();
+        for start in starts.take_while(|_| !observer.cancelled()) {
             let mut samples = sender.emit(first + start..first + count.min(start + CHUNK));
             workspace.trace(world, &sender, &mut samples, false);
             let mut kept = std::mem::take(&mut workspace.room.kept);
             if keep == Keep::All {
                 share_last(&mut kept, first + start);
             }
-            let chunk = workspace.end().spent;
-            let mut spent = spent.lock().unwrap_or_else(PoisonError::into_inner);
-            *spent = spent.plus(chunk);
-            kept
-        })
-        .collect();
-    chunks.concat()
+            chunks.push((start, kept));
+        }
+        let hand = workspace.end().spent;
+        let mut spent = spent.lock().unwrap_or_else(PoisonError::into_inner);
+        *spent = spent.plus(hand);
+        chunks
+    })
+    .concat();
+    chunks.sort_unstable_by_key(|&(start, _)| start);
+    chunks.into_iter().flat_map(|(_, kept)| kept).collect()
 }
 
 /// Gives all that is kept of one photon the power that it had in the end, whether it went on from there or not. Sunflow: a
