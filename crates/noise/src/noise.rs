@@ -244,10 +244,13 @@ impl Noise {
         level: Level,
         terms: Option<&Terms>,
         points: &[&[f32]],
-        outputs: [&mut [f32]; N],
+        mut outputs: [&mut [f32]; N],
     ) -> usize {
-        match *points {
-            [x, y, z] if self.has_kernel => simd::sum_improved(level, &self.tables, terms, [x, y, z], outputs),
+        match (points, &mut outputs[..]) {
+            (&[x, y, z], _) if self.has_kernel => simd::sum_improved(level, &self.tables, terms, [x, y, z], outputs),
+            (&[x, y], [sums]) if self.has_kernel => {
+                simd::sum_improved_in_plane(level, &self.tables, terms, [x, y], sums)
+            }
             _ => 0,
         }
     }

@@ -202,6 +202,34 @@ fn what_is_too_far_to_be_seen_is_the_mean() {
 }
 
 #[test]
+fn bytes_do_not_show_the_octaves_that_are_left_out() {
+    for declaration in Texture::ALL {
+        for sum in ["absolute", "plain"] {
+            let whole =
+                Texture::build(declaration.name, &[("depth", Value::Int(20)), ("sum", Value::Choice(sum))]).unwrap();
+            let seen = whole.clone().in_bytes();
+            let octaves = seen.sum().octaves();
+            let is_wood = declaration.name == "wood";
+            assert!(
+                if is_wood { octaves == 20 } else { (8..13).contains(&octaves) },
+                "{}: {octaves}",
+                declaration.name
+            );
+            let mut number = random_numbers();
+            for _ in 0..2000 {
+                let point = [number(), number(), number()];
+                let [a, b] = [&whole, &seen].map(|texture| texture.color(texture.value(point)));
+                let difference = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+                assert!(difference <= 0.5 / 255.0, "{}: {difference}", declaration.name);
+            }
+            // What is of few octaves stays as it is.
+            let few = defaults(declaration.name);
+            assert_eq!(few.clone().in_bytes(), few);
+        }
+    }
+}
+
+#[test]
 fn the_shapes_are_those_of_the_figures() {
     let point = [0.31f32, -0.52, 0.77];
     for declaration in Texture::ALL {

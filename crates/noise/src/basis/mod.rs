@@ -57,6 +57,9 @@ pub(crate) struct Tables {
     pub(crate) permutation: PairTable,
     /// Edge codes (see [`Real::edge_dot`]): of the entry in bits 0–3, of the next in bits 4–7.
     pub(crate) edges: ByteTable,
+    /// Edge codes in the plane, by the entry of a column along y: of that entry's own entry in bits 0–3, of the next one's in
+    /// bits 4–7.
+    pub(crate) plane: ByteTable,
     /// Both, for reading all corners of a cell at once.
     pub(crate) corners: CornerTables,
     /// The components of the unit gradients of classic noise: on the sphere, and on that of four dimensions.
@@ -71,8 +74,11 @@ impl Tables {
         let permutation = seed::permutation(seed);
         let code = |i: usize| improved::EDGE_CODES[usize::from(permutation[i % 256] & 15)];
         let edges = std::array::from_fn(|i| code(i) | code(i + 1) << 4);
+        let in_plane = |i: usize| code(usize::from(permutation[i % 256]));
+        let plane = ByteTable::new(std::array::from_fn(|i| in_plane(i) | in_plane(i + 1) << 4));
         let (permutation, edges) = (PairTable::new(permutation), ByteTable::new(edges));
         Tables {
+            plane,
             corners: CornerTables::new(&permutation, &edges),
             permutation,
             edges,

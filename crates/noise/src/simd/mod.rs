@@ -215,6 +215,12 @@ impl Terms<'_> {
     }
 }
 
+/// How many points the kernels made by hand take at a time with the instructions of a level, and at most.
+pub(crate) fn step(level: Level) -> usize {
+    if level.min(machine_level()) == Level::Avx512 { MOST_STEP } else { MOST_STEP / 2 }
+}
+pub(crate) const MOST_STEP: usize = 64;
+
 /// The sum of improved noise (without terms: the noise itself) without a period at the first points in space (and its gradient, where there are four
 /// outputs), by a kernel made by hand; returns how many points it did, perhaps none. Same bits as the generic evaluation.
 pub(crate) fn sum_improved<const N: usize>(
@@ -233,6 +239,23 @@ pub(crate) fn sum_improved<const N: usize>(
         Level::Avx2 => unsafe { avx2::improved::sum(tables, terms, points, outputs) },
         #[cfg(target_arch = "x86_64")]
         Level::Avx512 => unsafe { avx512::improved::sum(tables, terms, points, outputs) },
+        _ => 0,
+    }
+}
+
+/// [`sum_improved`] in the plane, without a gradient.
+pub(crate) fn sum_improved_in_plane(
+    level: Level,
+    tables: &Tables,
+    terms: Option<&Terms>,
+    points: [&[f32]; 2],
+    sums: &mut [f32],
+) -> usize {
+    assert_lengths(&points, sums.len());
+    match level.min(machine_level()) {
+        // SAFETY: the machine has the instructions, `machine_level` says.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => unsafe { avx512::plane::sum(tables, terms, points, sums) },
         _ => 0,
     }
 }

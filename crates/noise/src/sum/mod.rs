@@ -15,7 +15,7 @@ pub(crate) use combine::Partial;
 use crate::filter::{self, Fade};
 use crate::noise::Noise;
 use crate::number::{Dual, Real};
-use crate::simd::{self, FEW, LaneTerms, Level, Terms};
+use crate::simd::{self, FEW, LaneTerms, Level, MOST_STEP, Terms};
 
 /// A sum over K octaves of a noise: Σ gᵏ n(lᵏ p) for k from 0 to K − 1, with the lacunarity l and the gain g; or the same
 /// with another term for n: see [`Combine`].
@@ -47,6 +47,11 @@ struct Scales {
 
 /// More would reach past every number's range.
 const MOST_OCTAVES: u32 = 1024;
+
+/// Coordinates or sums of a step. (Aligned, or vectors may straddle cache lines.)
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Step([f32; MOST_STEP]);
 
 /// By what the noise over a footprint is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -235,6 +240,7 @@ impl Sum {
             if values.len() > FEW {
                 done = self.noise.sum_fast(level, Some(&self.terms()), &points, [&mut *values]);
             }
+            done += self.fill_last(level, points.map(|coordinates| &coordinates[done..]), &mut values[done..]);
             if done == values.len() {
                 return;
             }
@@ -254,6 +260,23 @@ impl Sum {
         }
         let points = points.map(|coordinates| &coordinates[done..]);
         self.fill_by_octaves(level, &points, None, &mut values[done..], &mut []);
+    }
+
+    /// The values at the last points, fewer than a step of the kernel made by hand, if there is one: among as many as fill the
+    /// step, since it takes less time for these than the generic evaluation for a few. Returns how many it did: all or none.
+    fn fill_last<const D: usize>(&self, level: Level, points: [&[f32]; D], values: &mut [f32]) -> usize {
+        let (count, length) = (values.len(), simd::step(level));
+        if count <= FEW || count > length {
+            return 0;
+        }
+        let (mut step, mut sums) = ([Step([0.0; MOST_STEP]); D], Step([0.0; MOST_STEP]));
+        for (step, points) in step.iter_mut().zip(points) {
+            step.0[..count].copy_from_slice(points);
+        }
+        let step = step.each_ref().map(|axis| &axis.0[..length]);
+        let done = self.noise.sum_fast(level, Some(&self.terms()), &step, [&mut sums.0[..length]]).min(count);
+        values[..done].copy_from_slice(&sums.0[..done]);
+        done
     }
 
     /// The values at many points, and the exact derivatives along each axis: the same bits as

@@ -292,7 +292,9 @@ impl<'a> Pictures<'a> {
         let arguments: Vec<(&str, Value)> = settings.iter().map(argument).collect();
         let texture =
             Texture::build(declaration.name, &arguments).map_err(|error| Diagnostic::error(span, error.to_string()))?;
-        Ok(Procedural { texture: if report { texture.in_figure_space() } else { texture }, decode: !report })
+        // The report's colours are those of the display, and light seldom makes them brighter.
+        let texture = if report { texture.in_figure_space().in_bytes() } else { texture };
+        Ok(Procedural { texture, decode: !report })
     }
 
     /// A picture of colours in the dialect's working space.

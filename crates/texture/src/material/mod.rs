@@ -39,6 +39,9 @@ pub(crate) trait Kind: Sized {
     /// The period of [`Kind::shape`] in its first argument, where it uses it.
     const BAND: Option<f64> = None;
 
+    /// By how much [`Kind::shape`] changes at most where its second argument changes by 1; infinite where it jumps.
+    const STEEPNESS: f64 = 1.0;
+
     /// From arguments that are already checked against the declaration.
     fn build(args: &Args) -> Self;
 
@@ -103,6 +106,10 @@ macro_rules! materials {
 
             pub(crate) fn band(&self) -> Option<f64> {
                 match self { $(Material::$kind(_) => $module::$kind::BAND,)* }
+            }
+
+            pub(crate) fn steepness(&self) -> f64 {
+                match self { $(Material::$kind(_) => $module::$kind::STEEPNESS,)* }
             }
 
             #[inline(always)]

@@ -24,6 +24,7 @@ impl Kind for Wood {
     const REFLECTION: f32 = 0.1;
     /// The rings gather around the lattice point at the origin, where the noise of all octaves vanishes.
     const OFFSET: f64 = 0.0;
+    const STEEPNESS: f64 = f64::INFINITY;
     /// Sawn and oiled: the light wood of spring is open, the dark of autumn is dense, takes a polish and stands out.
     const FINISH: Finish = Finish { relief: 0.003, roughness: [0.65, 0.35], emission: 0.0, tile: 7.0 };
 

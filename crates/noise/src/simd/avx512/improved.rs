@@ -15,7 +15,7 @@ use crate::simd::pipeline::{self, ALONE, Halves, Octave, PLAIN, Point, Sums};
 use crate::simd::{Terms, Vector, triples};
 
 /// Points that take part in one step.
-const STEP: usize = 64;
+pub(super) const STEP: usize = 64;
 
 /// The sums (and gradients) at the first points (without terms: the noise itself), a multiple of 64 of them; returns how many.
 #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
@@ -87,7 +87,7 @@ impl Halves<STEP> for InRegisters<'_> {
 
 #[inline]
 #[target_feature(enable = "avx512f")]
-fn load_table(bytes: &[u8; 256]) -> [__m512i; 4] {
+pub(super) fn load_table(bytes: &[u8; 256]) -> [__m512i; 4] {
     let (quarters, _) = bytes.as_chunks::<64>();
     let mut registers = [_mm512_setzero_si512(); 4];
     for (register, quarter) in registers.iter_mut().zip(quarters) {
@@ -145,7 +145,7 @@ fn finish<const USE: u8, const N: usize>(
 /// The offsets of sixteen points in their cells, and their curves.
 #[inline(always)]
 fn place<const USE: u8>(octave: &Octave, point: Point<STEP>, group: usize) -> [[F32x16; 3]; 2] {
-    let offset = offset::<USE>(octave, point, group);
+    let offset = offset::<USE, 3>(octave, point, group);
     [offset, Curve::quintic(&offset).at]
 }
 
@@ -170,7 +170,7 @@ fn add_vector<const GROUP: usize, const USE: u8, const N: usize>(
     point: Point<STEP>,
     sums: &mut Sums<STEP, N>,
 ) {
-    let offset = offset::<USE>(octave, point, GROUP);
+    let offset = offset::<USE, 3>(octave, point, GROUP);
     pipeline::add_vector::<F32x16, STEP, 16, N, USE>(octave, corners::<GROUP>(codes), offset, sums, GROUP);
 }
 
@@ -187,11 +187,11 @@ fn corners<const GROUP: usize>(codes: &[__m512i; 4]) -> Corners<I32x16> {
     corners
 }
 
-/// The offsets in their cells of sixteen of 64 points.
+/// The offsets in their cells of sixteen of 64 points, along the first `D` axes.
 #[inline(always)]
-fn offset<const USE: u8>(octave: &Octave, point: Point<STEP>, group: usize) -> [F32x16; 3] {
+pub(super) fn offset<const USE: u8, const D: usize>(octave: &Octave, point: Point<STEP>, group: usize) -> [F32x16; 3] {
     let mut offset = [F32x16::constant(0.0); 3];
-    for axis in 0..3 {
+    for axis in 0..D {
         let position = load::<USE>(point[axis], group, octave.frequency);
         offset[axis] = position - position.floor();
     }
@@ -229,7 +229,7 @@ fn hash<const USE: u8>(tables: &Tables, frequency: f32, points: Point<STEP>) -> 
 /// The low bytes of 64 cells: the byte `group` of the lane `i` belongs to the coordinate 16 · group + i.
 #[inline]
 #[target_feature(enable = "avx512f,avx512vbmi2")]
-fn cells<const USE: u8>(numbers: &[f32; STEP], frequency: f32) -> __m512i {
+pub(super) fn cells<const USE: u8>(numbers: &[f32; STEP], frequency: f32) -> __m512i {
     let group = |group| {
         let numbers = load::<USE>(numbers, group, frequency).0;
         _mm512_cvt_roundps_epi32::<{ _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC }>(numbers)
@@ -244,7 +244,7 @@ fn cells<const USE: u8>(numbers: &[f32; STEP], frequency: f32) -> __m512i {
 /// The table's bytes at 64 indices; `mask` has their highest bits.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
-fn lookup(table: &[__m512i; 4], index: __m512i, mask: __mmask64) -> __m512i {
+pub(super) fn lookup(table: &[__m512i; 4], index: __m512i, mask: __mmask64) -> __m512i {
     let low = _mm512_permutex2var_epi8(table[0], index, table[1]);
     let high = _mm512_permutex2var_epi8(table[2], index, table[3]);
     _mm512_mask_blend_epi8(mask, low, high)

@@ -1,6 +1,7 @@
 //! Sixteen lanes: AVX-512 with VBMI. Tables of bytes are read from four registers, 64 bytes at a time.
 
 pub(super) mod improved;
+pub(super) mod plane;
 pub(super) mod single;
 
 use std::arch::x86_64::*;
