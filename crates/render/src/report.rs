@@ -52,6 +52,11 @@ impl Rules for Report {
     const T_MIN: f32 = T_MIN;
     const OPEN: bool = false;
 
+    /// Every sample has few rays, so that more of them fill the batches.
+    fn wave(&self) -> usize {
+        2048
+    }
+
     fn shade(&self, batch: &Batch<'_>, room: &mut Room, queues: &mut Queues<Gathered>) {
         room.locate(self, batch);
         queues.clock.lap(Stage::Shade);

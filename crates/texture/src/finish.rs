@@ -107,7 +107,7 @@ impl Texture {
         for start in (0..count).step_by(BLOCK) {
             let size = BLOCK.min(count - start);
             let at = start..start + size;
-            self.place(points, at.clone(), &mut along, &mut moved);
+            self.place(level, points, at.clone(), &mut along, &mut moved);
             let here = moved.each_ref().map(|axis| &axis[..size]);
             let slopes = gradient.each_mut().map(|axis| &mut axis[..size]);
             self.sum.fill_with_gradient_at(level, here, &mut sums[..size], slopes);
@@ -140,7 +140,7 @@ impl Texture {
         let (mut along, mut moved, mut sums) = ([0.0; BLOCK], [[0.0; BLOCK]; D], [0.0; BLOCK]);
         for (block, heights) in heights.chunks_mut(BLOCK).enumerate() {
             let (start, size) = (block * BLOCK, heights.len());
-            self.place(points, start..start + size, &mut along, &mut moved);
+            self.place(level, points, start..start + size, &mut along, &mut moved);
             self.sum.fill_at(level, moved.each_ref().map(|axis| &axis[..size]), &mut sums[..size]);
             self.material.height_alone(level, [&along[..size], &sums[..size]], heights);
             for height in heights {

@@ -186,7 +186,7 @@ impl Texture {
         let mut sums = [0.0; BLOCK];
         for (block, coefficients) in coefficients.chunks_mut(BLOCK).enumerate() {
             let (start, count) = (block * BLOCK, coefficients.len());
-            self.place(points, start..start + count, &mut along, &mut moved);
+            self.place(level, points, start..start + count, &mut along, &mut moved);
             let moved = moved.each_ref().map(|axis| &axis[..count]);
             let Some(footprints) = footprints else {
                 self.sum.fill_at(level, moved, &mut sums[..count]);
@@ -205,20 +205,18 @@ impl Texture {
     /// X.x, and X where the noise is evaluated, of the points in a range, which is no longer than a block.
     pub(crate) fn place<const D: usize>(
         &self,
+        level: Level,
         points: [&[f32]; D],
         range: std::ops::Range<usize>,
         along: &mut [f32; BLOCK],
         moved: &mut [[f32; BLOCK]; D],
     ) {
-        let (factor, offset, stretch) = (self.factor() as f32, self.offset::<D>() as f32, self.stretch as f32);
-        for axis in (0..D).rev() {
-            let coordinates = &points[axis][range.clone()];
-            for ((along, moved), coordinate) in along.iter_mut().zip(&mut moved[axis]).zip(coordinates) {
-                let scaled = coordinate * factor;
-                *moved = scaled + offset;
-                *along = scaled * stretch;
-            }
+        let (factor, count) = (self.factor(), range.len());
+        for (moved, axis) in moved.iter_mut().zip(points) {
+            let place = Place { factor, offset: self.offset::<D>() };
+            simd::map_at(level, &place, [&axis[range.clone()]], &mut moved[..count]);
         }
+        simd::map_at(level, &Along { factor, stretch: self.stretch }, [&points[0][range]], &mut along[..count]);
     }
 
     /// The colour that a coefficient mixes: display-encoded red, green, blue within 0 and 1. (Black for NaN.)
@@ -274,6 +272,32 @@ impl Texture {
     pub(crate) fn factor(&self) -> f64 {
         let of_space = || f64::from(self.frequencies().of(self.space)) / self.scale;
         f64::from(self.cells_per_unit.unwrap_or_else(of_space) as f32)
+    }
+}
+
+/// A coordinate where the noise is evaluated.
+struct Place {
+    factor: f64,
+    offset: f64,
+}
+
+impl Kernel<1> for Place {
+    #[inline(always)]
+    fn run<R: Real>(&self, [coordinate]: [R; 1]) -> R {
+        coordinate * R::constant(self.factor) + R::constant(self.offset)
+    }
+}
+
+/// The first coordinate where the material uses it itself.
+struct Along {
+    factor: f64,
+    stretch: f64,
+}
+
+impl Kernel<1> for Along {
+    #[inline(always)]
+    fn run<R: Real>(&self, [coordinate]: [R; 1]) -> R {
+        coordinate * R::constant(self.factor) * R::constant(self.stretch)
     }
 }
 
