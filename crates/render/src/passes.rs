@@ -22,7 +22,7 @@ use crate::film::{Encoding, Film, Pixel};
 use crate::options::{Cancelled, Observer, RenderOptions, ResumeError, Stats};
 use crate::threads;
 use crate::tile::{Active, Rect, Spread, Sum, TILE, Tile};
-use crate::wave::{Results, Rules, Samples, Shots, Workspace};
+use crate::wave::{Results, Rules, Samples, Seen, Shots, Workspace};
 
 /// One thread's room for the waves of its tiles.
 struct Room<R: Rules> {
@@ -340,33 +340,32 @@ impl<'a, R: Rules> Job<'a, R> {
             Choice::Edges(threshold) => (true, threshold),
             Choice::Uneven(threshold) => (false, threshold),
         };
-        // The deviation of a pair that differs by the threshold t, |a − b| / (a + b) = t, is t.
-        let is_uneven = |spread: &Spread| spread.count > 1 && spread.deviation() > threshold;
         let choose = |tile: &Tile| {
-            let [x0, y0, x1, y1] = tile.rect.meet(among).0;
-            let inner = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
-            let chosen = inner.filter(|&(x, y)| {
-                let slot = tile.rect.index(x, y);
-                let uneven = is_uneven(&tile.spreads[slot]);
-                let neighbours = || self.neighbours(x, y).map(|(x, y)| self.pixel(tiles, x, y));
-                uneven
-                    || neighbours().any(|(other, at)| {
-                        // Later an edge next door may just cut a corner of this pixel, where no sample was yet.
-                        (first || is_uneven(&other.spreads[at])) && differ((tile, slot), (other, at), threshold)
-                    })
-            });
+            let part = tile.rect.meet(among);
+            let window = wider(part, 1, self.scene.size).meet(self.region);
+            let looks = window.places().map(|(x, y)| Look::of(self.pixel(tiles, x, y), threshold));
+            let mut looks: Vec<Look> = looks.collect();
+            let width = window.width() as usize;
+            // Each pixel with those after it: on the right, and the three below.
+            for (at, (x, _)) in window.places().enumerate() {
+                let (left, right) = (x > window.0[0], x + 1 < window.0[2]);
+                let below = at + width;
+                let others = [(right, at + 1), (left, below.wrapping_sub(1)), (true, below), (right, below + 1)];
+                for other in others.into_iter().filter_map(|(is_inside, other)| is_inside.then_some(other)) {
+                    let Ok([a, b]) = looks.get_disjoint_mut([at, other]) else { continue };
+                    // Later an edge next door may just cut a corner of this pixel, where no sample was yet.
+                    let (of_a, of_b) = (!a.is_chosen && (first || b.is_uneven), !b.is_chosen && (first || a.is_uneven));
+                    if (of_a || of_b) && differ(a, b, threshold) {
+                        a.is_chosen |= of_a;
+                        b.is_chosen |= of_b;
+                    }
+                }
+            }
+            let chosen = part.places().filter(|&(x, y)| looks[window.index(x, y)].is_chosen);
             Active::Some(chosen.map(|(x, y)| tile.rect.index(x, y) as u32).collect())
         };
-        let active: Vec<Active> = tiles.par_iter().map(choose).collect();
+        let active: Vec<Active> = tiles.par_iter().with_max_len(4).map(choose).collect();
         tiles.iter_mut().zip(active).for_each(|(tile, active)| tile.begin(active));
-    }
-
-    /// The up to eight pixels around one, within the region.
-    fn neighbours(&self, x: u32, y: u32) -> impl Iterator<Item = (u32, u32)> + use<R> {
-        let [x0, y0, x1, y1] = self.region.0;
-        let columns = x.saturating_sub(1).max(x0)..(x + 2).min(x1);
-        let rows = y.saturating_sub(1).max(y0)..(y + 2).min(y1);
-        rows.flat_map(move |row| columns.clone().map(move |column| (column, row))).filter(move |&at| at != (x, y))
     }
 
     /// A film for the frame. All threads clear it, which is no small part of the work for pictures of one sample.
@@ -493,17 +492,34 @@ fn passes(sampling: Sampling) -> Vec<Pass> {
     }
 }
 
+/// A pixel, as its neighbours see it.
+#[derive(Clone, Copy)]
+struct Look {
+    seen: Seen,
+    sum: Sum,
+    /// Whether its own samples differ.
+    is_uneven: bool,
+    is_chosen: bool,
+}
+
+impl Look {
+    fn of((tile, slot): (&Tile, usize), threshold: f32) -> Look {
+        let (spread, sum) = (&tile.spreads[slot], tile.sums[slot]);
+        // The deviation of a pair that differs by the threshold t, |a − b| / (a + b) = t, is t.
+        let is_uneven = spread.count > 1 && spread.deviation() > threshold;
+        Look { seen: spread.seen, sum, is_uneven, is_chosen: is_uneven }
+    }
+}
+
 /// Whether two neighbours may have an edge between them (format reference, §3.3, step 4).
-fn differ((a, i): (&Tile, usize), (b, j): (&Tile, usize), threshold: f32) -> bool {
-    let (seen, other) = (a.spreads[i].seen, b.spreads[j].seen);
+fn differ(a: &Look, b: &Look, threshold: f32) -> bool {
     let normals = |a: Vec3, b: Vec3| a != b && a.dot(b) < 0.9;
-    if seen.object != other.object || normals(seen.normal, other.normal) {
+    if a.seen.object != b.seen.object || normals(a.seen.normal, b.seen.normal) {
         return true;
     }
-    let (a, b) = (&a.sums[i], &b.sums[j]);
     // The test is the same at any scale, so sums over crossed counts do for means, without divisions.
-    a.color.iter().zip(&b.color).any(|(x, y)| {
-        let (x, y) = (x * b.count, y * a.count);
+    a.sum.color.iter().zip(&b.sum.color).any(|(x, y)| {
+        let (x, y) = (x * b.sum.count, y * a.sum.count);
         (x - y).abs() > threshold * (x + y).abs()
     })
 }

@@ -93,6 +93,12 @@ impl Rect {
         Rect([x0, y0, ax1.min(bx1).max(x0), ay1.min(by1).max(y0)])
     }
 
+    /// Columns and rows of its pixels, row by row.
+    pub fn places(self) -> impl Iterator<Item = (u32, u32)> {
+        let [x0, y0, x1, y1] = self.0;
+        (y0..y1).flat_map(move |y| (x0..x1).map(move |x| (x, y)))
+    }
+
     pub fn pixels(self) -> u64 {
         u64::from(self.width()) * u64::from(self.height())
     }

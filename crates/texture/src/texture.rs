@@ -92,15 +92,15 @@ impl Texture {
         self
     }
 
-    /// The same texture without the octaves that a picture of bytes cannot show: those that all together move no colour by
-    /// half a step of a byte. (Where the material's shape jumps, as wood's does at the edge of each ring, that is none.)
+    /// The same texture without the octaves that a picture of bytes hardly shows: those that all together move no colour by
+    /// a step of a byte. (Where the material's shape jumps, as wood's does at the edge of each ring, that is none.)
     pub fn in_bytes(mut self) -> Self {
         let difference = (0..3).map(|i| f64::from(self.initial[i] - self.last[i]).abs()).fold(0.0, f64::max);
         let [low, high] = self.sum.range();
         let some = |octaves: u32| self.sum.clone().with_octaves(f64::from(octaves));
         let shown = (0..self.sum.octaves()).map(some).find(|sum| {
             let left_out = (high - sum.range()[1]).max(sum.range()[0] - low);
-            left_out * self.material.steepness() * difference <= 0.5 / 255.0
+            left_out * self.material.steepness() * difference <= 1.0 / 255.0
         });
         self.sum = shown.unwrap_or(self.sum);
         self

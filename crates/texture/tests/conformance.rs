@@ -202,7 +202,7 @@ fn what_is_too_far_to_be_seen_is_the_mean() {
 }
 
 #[test]
-fn bytes_do_not_show_the_octaves_that_are_left_out() {
+fn bytes_hardly_show_the_octaves_that_are_left_out() {
     for declaration in Texture::ALL {
         for sum in ["absolute", "plain"] {
             let whole =
@@ -211,7 +211,7 @@ fn bytes_do_not_show_the_octaves_that_are_left_out() {
             let octaves = seen.sum().octaves();
             let is_wood = declaration.name == "wood";
             assert!(
-                if is_wood { octaves == 20 } else { (8..13).contains(&octaves) },
+                if is_wood { octaves == 20 } else { (7..12).contains(&octaves) },
                 "{}: {octaves}",
                 declaration.name
             );
@@ -220,7 +220,7 @@ fn bytes_do_not_show_the_octaves_that_are_left_out() {
                 let point = [number(), number(), number()];
                 let [a, b] = [&whole, &seen].map(|texture| texture.color(texture.value(point)));
                 let difference = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-                assert!(difference <= 0.5 / 255.0, "{}: {difference}", declaration.name);
+                assert!(difference <= 1.0 / 255.0, "{}: {difference}", declaration.name);
             }
             // What is of few octaves stays as it is.
             let few = defaults(declaration.name);
