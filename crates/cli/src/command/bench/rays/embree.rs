@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::ptr;
 use std::sync::atomic::{AtomicI64, Ordering};
 
+use jaspe_noise::simd::Level;
 use jaspe_render::{MeshFile, RaySet};
 use libloading::Library;
 
@@ -254,23 +255,30 @@ unsafe extern "C" fn count(held: *mut c_void, bytes: isize, _: bool) -> bool {
 }
 
 impl Embree {
-    /// Loads the library that is named, or one that the system finds; `None` where there is none.
+    /// Loads the library that is named, or one that the system finds; `None` where there is none. Held to a level, it uses
+    /// no instructions beyond that.
     ///
     /// # Errors
     /// Why the named library cannot be used.
-    pub fn load(named: Option<&Path>) -> Result<Option<Embree>, String> {
-        let Some(path) = named else {
-            return Ok(NAMES.iter().find_map(|name| Embree::open(&PathBuf::from(name)).ok()));
+    pub fn load(named: Option<&Path>, held: Option<Level>) -> Result<Option<Embree>, String> {
+        let options = match held {
+            None => c"",
+            Some(Level::Scalar | Level::Sse) => c"max_isa=sse4.2",
+            Some(Level::Avx2) => c"max_isa=avx2",
+            Some(Level::Avx512) => c"max_isa=avx512",
         };
-        Embree::open(path).map(Some)
+        let Some(path) = named else {
+            return Ok(NAMES.iter().find_map(|name| Embree::open(&PathBuf::from(name), options).ok()));
+        };
+        Embree::open(path, options).map(Some)
     }
 
-    fn open(path: &Path) -> Result<Embree, String> {
+    fn open(path: &Path, options: &CStr) -> Result<Embree, String> {
         // SAFETY: whoever names a library wants its code to run; the functions have the types of its header.
         unsafe {
             let library = Library::new(path).map_err(|error| error.to_string())?;
             let api = Api::of(library).map_err(|error| error.to_string())?;
-            let device = (api.new_device)(ptr::null());
+            let device = (api.new_device)(options.as_ptr());
             if device.is_null() {
                 return Err(format!("it makes no device: error {}", (api.device_error)(ptr::null_mut())));
             }
