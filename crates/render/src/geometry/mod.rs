@@ -8,6 +8,7 @@ mod build;
 mod bvh;
 mod collapse;
 mod few;
+mod hull;
 mod kernel;
 mod packet;
 mod pages;

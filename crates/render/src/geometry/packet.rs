@@ -4,7 +4,8 @@
 //! The same way means directions of the same signs. Where only few rays of a packet enter a node, those look into it
 //! alone: the packet keeps a list of that, and in the end hands it over ([`Packet::disperse`]).
 
-use super::bvh::{Child, Kind, Node, Octant, Sides};
+use super::bvh::{Child, Kind, Node, Octant};
+use super::hull::{Hull, Span};
 use super::kernel::{self, Crossing, Inverse, Plain, Shear, Slab};
 use super::rays::{Group, Hits, MOST, Names, RayView, put, put_group};
 use super::simd::{Lanes, Simd, Vec3s};
@@ -53,8 +54,9 @@ impl Trail {
         let at = if alone { STACK + self.left } else { self.stack };
         put_group(near, &mut self.near[at]);
         (self.children[at], self.masks[at]) = (child, mask);
-        self.stack += usize::from(!alone);
-        self.left += usize::from(alone);
+        let any = mask != 0;
+        self.stack += usize::from(any & !alone);
+        self.left += usize::from(any & alone);
     }
 
     /// Where the children are, from those that come last to those that come first.
@@ -81,13 +83,13 @@ pub(super) struct Packet<L, S> {
     slope: (L, L),
     scale: L,
     t_min: f32,
-    sides: Sides,
-    octant: Octant,
+    hull: Hull<S>,
     /// Rays whose dominant axis is the first, and the second.
     longest: [u32; 2],
     /// That of all, where they have the same.
     turned: Option<[usize; 3]>,
-    hull: Hull<S>,
+    /// Whether [`Packet::aim`] has been done.
+    is_aimed: bool,
     /// Rays that are still looking: where anything will do, a ray stops at the first hit.
     alive: u32,
     /// Rays that start at a primitive and must not meet it.
@@ -99,12 +101,26 @@ pub(super) struct Packet<L, S> {
     ids: Names<L>,
 }
 
-/// A ray that enters boxes no later and leaves them no earlier than any of the packet: intervals of origins and directions
-/// in place of numbers ([Boulos, Wald, Shirley 2006] "Geometric and Arithmetic Culling Methods for Entire Ray Packets").
-#[derive(Clone, Copy)]
-struct Hull<S> {
-    enter: (Vec3s<S>, Vec3s<S>),
-    leave: (Vec3s<S>, Vec3s<S>),
+/// What rays have met, to be looked at one by one.
+struct LaneHits<L: Lanes> {
+    t: L::Floats,
+    u: L::Floats,
+    v: L::Floats,
+    object: L::Bits,
+    index: L::Bits,
+}
+
+impl<L: Lanes> LaneHits<L> {
+    /// That of lane `k`. Where anything will do, nothing has been met yet.
+    #[inline(always)]
+    fn get<O: Outcome>(&self, k: usize) -> Hit {
+        let t = self.t.as_ref()[k];
+        if O::ANY {
+            return Hit { t, ..Hit::NONE };
+        }
+        let id = Id { object: self.object.as_ref()[k], index: self.index.as_ref()[k] };
+        Hit { t, u: self.u.as_ref()[k], v: self.v.as_ref()[k], id, time: None }
+    }
 }
 
 impl<L: Lanes, S: Simd> Packet<L, S> {
@@ -120,8 +136,7 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
         let one = L::splat(1.0);
         // A zero has a sign too.
         let (nx, ny, nz) = (one.copysign(x).lt(zero), one.copysign(y).lt(zero), one.copysign(z).lt(zero));
-        let negative = [nx & 1 != 0, ny & 1 != 0, nz & 1 != 0];
-        let octant = Octant::new(negative);
+        let octant = Octant::new([nx & 1 != 0, ny & 1 != 0, nz & 1 != 0]);
         Packet {
             numbers,
             is_row,
@@ -133,16 +148,15 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
             } else {
                 FEW
             },
-            hull: Hull::around(origin, direction, negative),
+            hull: Hull::around(&Span::of(group, octant)),
             slab: Slab { origin, inverse: Inverse { enter: direction, leave: direction } },
             direction,
             slope: (zero, zero),
             scale: zero,
             t_min,
-            sides: octant.sides(),
-            octant,
             longest: [0; 2],
             turned: None,
+            is_aimed: false,
             alive: zero.le(t) & all,
             leaving: all & !skip.same(none),
             skip,
@@ -171,6 +185,7 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
         };
         (self.slope, self.scale, self.longest) = ((i, j), L::splat(1.0).div(longest), [first, second]);
         self.slab.inverse = Inverse::new(self.direction);
+        self.is_aimed = true;
     }
 
     /// The dominant axis of ray `k`.
@@ -179,11 +194,12 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
         2 - 2 * (self.longest[0] >> k & 1) - (self.longest[1] >> k & 1)
     }
 
-    /// What ray `i` has met.
+    /// What the rays have met.
     #[inline(always)]
-    fn hit(&self, i: usize) -> Hit {
+    fn hits(&self) -> LaneHits<L> {
+        let Names { object, index } = self.ids;
         let (t, u, v) = (self.t.store(), self.u.store(), self.v.store());
-        Hit { t: t.as_ref()[i], u: u.as_ref()[i], v: v.as_ref()[i], id: self.ids.get(i), time: None }
+        LaneHits { t, u, v, object: object.store_bits(), index: index.store_bits() }
     }
 
     /// Whether no ray of the packet looks for anything.
@@ -192,21 +208,15 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
         self.alive == 0
     }
 
-    /// Goes through the tree, nearest boxes first.
+    /// Goes through the tree below a gate, nearest boxes first.
     #[inline(always)]
-    pub fn walk<O: Outcome>(&mut self, tree: &Tree, trail: &mut Trail) {
+    pub fn walk<O: Outcome>(&mut self, tree: &Tree, gate: Child, trail: &mut Trail) {
         (trail.stack, trail.left) = (0, 0);
-        let root = tree.root;
-        if root.is_node() && self.alive.count_ones() > self.few {
-            let slots = self.enters(tree, root);
-            if slots.1 == 0 {
-                return;
-            }
+        if gate != Child::NONE {
+            trail.keep(gate, self.alive, L::splat(0.0), self.few);
+        }
+        if self.alive.count_ones() <= self.few || !gate.is_node() {
             self.aim();
-            self.open(tree, trail, root, slots, self.alive);
-        } else if root != Child::NONE {
-            self.aim();
-            trail.keep(root, self.alive, L::splat(0.0), self.few);
         }
         // Few rays go on alone, and so do all where there is no room for what is left to them.
         while trail.stack > 0 && trail.left <= LEFT - 9 && self.alive.count_ones() > self.few {
@@ -219,48 +229,43 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
             }
             let child = trail.children[top];
             if child.is_node() {
-                self.open(tree, trail, child, self.enters(tree, child), active);
+                let node = &tree.nodes[child.index()];
+                let (slots, count) = self.hull.enters(node);
+                if count == 0 {
+                    continue;
+                }
+                if !self.is_aimed {
+                    self.aim();
+                }
+                self.open::<O>(tree, trail, node, &slots[..count.min(8)], active);
             } else {
                 self.meet::<O>(tree, child, active, near);
             }
         }
     }
 
-    /// The children of a node that the hull enters: their slots, from the farthest to the nearest, and how many they are.
-    #[inline(always)]
-    fn enters(&self, tree: &Tree, node: Child) -> ([u32; 8], usize) {
-        const SLOTS: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
-        let (node, hull) = (&tree.nodes[node.index()], &self.hull);
-        let near = node.near(self.sides).sub(hull.enter.0).mul(hull.enter.1);
-        let far = node.far(self.sides).sub(hull.leave.0).mul(hull.leave.1);
-        let enter = near.x.max(near.y).max(near.z.max(S::splat(0.0)));
-        let leave = far.x.min(far.y).min(far.z);
-        let (mut values, mut slots) = ([0.0; 8], [0; 8]);
-        let count = enter.pack(leave, &node.order, self.octant.shift(), &SLOTS, &mut values, &mut slots);
-        (slots, count)
-    }
-
     /// Keeps those of some children of a node that any of the `active` rays enters.
     #[inline(always)]
-    fn open(&self, tree: &Tree, trail: &mut Trail, node: Child, (slots, count): ([u32; 8], usize), active: u32) {
-        let node = &tree.nodes[node.index()];
-        for &slot in &slots[..count.min(8)] {
+    fn open<O: Outcome>(&self, tree: &Tree, trail: &mut Trail, node: &Node, slots: &[u32], active: u32) {
+        for &slot in slots {
             let slot = slot as usize & 7;
             let child = node.child(slot);
-            tree.prefetch::<S>(child);
             let (enter, leave) = self.enter(node, slot);
             let mask = active & enter.le(leave.min(self.t));
-            if mask != 0 {
-                trail.keep(child, mask, enter, self.few);
+            // Shadows meet many boxes in vain: guessing would cost more than it saves.
+            if !O::ANY && mask == 0 {
+                continue;
             }
+            tree.prefetch::<S>(child);
+            trail.keep(child, mask, enter, self.few);
         }
     }
 
     /// Where the rays enter and leave one child of a node.
     #[inline(always)]
     fn enter(&self, node: &Node, slot: usize) -> (L, L) {
-        let (sides, [x, y, z]) =
-            (&node.sides, [self.sides.0[0] as usize, self.sides.0[1] as usize, self.sides.0[2] as usize]);
+        let (sides, [x, y, z]) = (&node.sides, self.hull.sides.0);
+        let (x, y, z) = (x as usize, y as usize, z as usize);
         let near = Vec3s::of([sides[x][slot], sides[y][slot], sides[z][slot]]);
         let far = Vec3s::of([sides[x ^ 1][slot], sides[y ^ 1][slot], sides[z ^ 1][slot]]);
         kernel::slab(near, far, &self.slab)
@@ -307,7 +312,7 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
         let Vec3s { x, y, z } = self.slab.origin;
         let origin = [x.store(), y.store(), z.store()];
         let (i, j, scale) = (self.slope.0.store(), self.slope.1.store(), self.scale.store());
-        let t_min = S::splat(self.t_min);
+        let (t_min, hits) = (S::splat(self.t_min), self.hits());
         let mut rest = active;
         while rest != 0 {
             let k = rest.trailing_zeros() as usize % L::COUNT;
@@ -323,10 +328,9 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
                 scale: S::splat(scale.as_ref()[k]),
                 t_min,
             };
-            let t = self.t.store().as_ref()[k];
-            let Some(crossing) = block.cross(&shear, turned, near.as_ref()[k], t) else { continue };
+            let mut hit = hits.get::<O>(k);
+            let Some(crossing) = block.cross(&shear, turned, near.as_ref()[k], hit.t) else { continue };
             let skip = if self.leaving >> k & 1 != 0 { self.skip.get(k) } else { Id::NONE };
-            let mut hit = self.hit(k);
             let known = hit.id;
             crossing.improve(&mut hit, &block.ids, skip);
             if hit.id == known {
@@ -424,28 +428,30 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
         if self.is_row {
             outcome.take_row(self.numbers[0] as usize, self);
         } else {
+            let hits = self.hits();
             let mut rest = !going & self.all;
             while rest != 0 {
                 let k = rest.trailing_zeros() as usize % L::COUNT;
                 rest &= rest - 1;
-                outcome.take(self.numbers[k] as usize, &self.hit(k), self.alive >> k & 1 == 0);
+                outcome.take(self.numbers[k] as usize, &hits.get::<O>(k), self.alive >> k & 1 == 0);
             }
         }
         if going != 0 {
             pool.make_room::<S, O>(going.count_ones() as usize, tree, outcome);
-            self.send(rays, tree, trail, pool, going);
+            self.send::<O>(rays, tree, trail, pool, going);
         }
     }
 
     /// Sends some rays off, each with what is left for it.
     #[inline(always)]
-    fn send(&self, rays: RayView<'_>, tree: &Tree, trail: &Trail, pool: &mut Pool, going: u32) {
+    fn send<O: Outcome>(&self, rays: RayView<'_>, tree: &Tree, trail: &Trail, pool: &mut Pool, going: u32) {
         let Slab { origin: o, inverse: Inverse { enter, leave } } = self.slab;
         let ((i, j), d) = (self.slope, self.direction);
         let lines = L::lines([
             o.x, o.y, o.z, enter.x, enter.y, enter.z, leave.x, leave.y, leave.z, i, j, self.scale, d.x, d.y, d.z,
             self.t,
         ]);
+        let hits = self.hits();
         let mut places = [0; MOST];
         let mut rest = going;
         while rest != 0 {
@@ -453,14 +459,14 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
             rest &= rest - 1;
             let number = self.numbers[k];
             let course = Course {
-                octant: self.octant,
+                octant: self.hull.octant,
                 dominant: self.dominant(k),
                 t_min: self.t_min,
-                skip: self.skip.get(k),
+                skip: if self.leaving >> k & 1 != 0 { self.skip.get(k) } else { Id::NONE },
                 time: rays.time.get(number as usize).copied(),
                 number,
             };
-            places[k] = pool.begin(Line(lines[k]), course, self.hit(k));
+            places[k] = pool.begin(Line(lines[k]), course, hits.get::<O>(k));
         }
         for at in trail.all() {
             let (child, near) = (trail.children[at], &trail.near[at]);
@@ -495,33 +501,5 @@ impl<L: Lanes, S: Simd> Packet<L, S> {
         for (i, blocked) in blocked.iter_mut().take(L::COUNT).enumerate() {
             *blocked = self.alive >> i & 1 == 0;
         }
-    }
-}
-
-impl<S: Simd> Hull<S> {
-    /// With directions of positive sign a box is entered the earliest by the origin that lies farthest and the smallest
-    /// inverse, unless it lies behind, where all is cut off at 0; it is left the latest by the opposite.
-    #[inline(always)]
-    fn around<L: Lanes>(origin: Vec3s<L>, direction: Vec3s<L>, negative: [bool; 3]) -> Self {
-        let [(ex, dx), (lx, mx)] = ends(origin.x, direction.x, negative[0]);
-        let [(ey, dy), (ly, my)] = ends(origin.y, direction.y, negative[1]);
-        let [(ez, dz), (lz, mz)] = ends(origin.z, direction.z, negative[2]);
-        // Of numbers of one sign, the greatest has the smallest inverse.
-        let inverse = kernel::inverse(S::load(&[dx, dy, dz, mx, my, mz, 1.0, 1.0]));
-        let ([dx, dy, dz, ..], [.., mx, my, mz, _, _]) = (inverse.enter.store(), inverse.leave.store());
-        Hull {
-            enter: (Vec3s::of([ex, ey, ez]), Vec3s::of([dx, dy, dz])),
-            leave: (Vec3s::of([lx, ly, lz]), Vec3s::of([mx, my, mz])),
-        }
-    }
-}
-
-/// For one axis, the origin and the direction for which boxes are entered first, and those for which they are left last.
-#[inline(always)]
-fn ends<L: Lanes>(origin: L, direction: L, negative: bool) -> [(f32, f32); 2] {
-    if negative {
-        [(origin.least(), direction.least()), (origin.most(), direction.most())]
-    } else {
-        [(origin.most(), direction.most()), (origin.least(), direction.least())]
     }
 }

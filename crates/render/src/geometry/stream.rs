@@ -7,7 +7,10 @@
 //! meet what is in it, then those that are done make room for others: a loop that does one thing leaves the processor
 //! nothing to guess.
 
-use super::bvh::Child;
+use std::ops::Range;
+
+use super::bvh::{Child, Octant};
+use super::hull::{Hull, Span};
 use super::packet::{Packet, Trail};
 use super::rays::{Group, Hits, Queue, RayView};
 use super::simd::{Lanes, Simd, Vec3s};
@@ -19,6 +22,9 @@ use super::{Geometry, Hit, Id};
 const FLIGHTS: usize = 20;
 /// Places in lists of them: a power of two.
 const PLACES: usize = 32;
+
+/// Most rays that look together for where they come into the tree.
+const ROW: usize = 128;
 
 /// Room for the traversal of one thread; made once, because clearing it costs as much as a short ray.
 pub(crate) struct Scratch {
@@ -42,6 +48,8 @@ pub(super) trait Outcome {
     fn take(&mut self, ray: usize, hit: &Hit, blocked: bool);
     /// Takes what consecutive rays have met.
     fn take_row<L: Lanes, S: Simd>(&mut self, first: usize, packet: &Packet<L, S>);
+    /// Takes consecutive rays that meet nothing, and the ends of all rays.
+    fn pass(&mut self, rays: Range<usize>, t_max: &[f32]);
 }
 
 /// The closest hits.
@@ -60,6 +68,16 @@ impl Outcome for Closest<'_> {
     fn take_row<L: Lanes, S: Simd>(&mut self, first: usize, packet: &Packet<L, S>) {
         packet.store(first, self.0);
     }
+
+    #[inline(always)]
+    fn pass(&mut self, rays: Range<usize>, t_max: &[f32]) {
+        let Hits { t, u, v, id, .. } = &mut *self.0;
+        t[rays.clone()].copy_from_slice(&t_max[rays.clone()]);
+        u[rays.clone()].fill(0.0);
+        v[rays.clone()].fill(0.0);
+        id.object[rays.clone()].fill(Id::NONE.object);
+        id.index[rays].fill(Id::NONE.index);
+    }
 }
 
 /// Whether there are any.
@@ -77,51 +95,54 @@ impl Outcome for Blocked<'_> {
     fn take_row<L: Lanes, S: Simd>(&mut self, first: usize, packet: &Packet<L, S>) {
         packet.store_blocked(&mut self.0[first..]);
     }
+
+    #[inline(always)]
+    fn pass(&mut self, rays: Range<usize>, t_max: &[f32]) {
+        for (blocked, t_max) in self.0[rays.clone()].iter_mut().zip(&t_max[rays]) {
+            // What is not a number counts as an end before the beginning.
+            *blocked = !(0.0..=f32::INFINITY).contains(t_max);
+        }
+    }
 }
 
 /// Where the rays of packets come from.
 struct Source<'a> {
     rays: RayView<'a>,
+    tree: &'a Tree,
     /// Rays of each octant that wait until there are enough.
     queues: &'a mut [Queue; 8],
     /// Octants of which there are enough.
     full: u32,
-    /// How many rays have been looked at.
+    /// How many rays have been handed over or put into queues.
     seen: usize,
+    /// Up to here, rays go the same way as they lie.
+    row_end: usize,
+    /// Where those come into the tree.
+    gate: Child,
+    /// Whether there is anything beside the tree.
+    planes: bool,
 }
 
 impl Source<'_> {
-    /// Rays that go the same way: whose directions have the same signs. Those that end before they begin are done.
+    /// Rays that go the same way: whose directions have the same signs. They come into the tree by the gate.
     #[inline(always)]
-    fn next<L: Lanes, O: Outcome>(&mut self, outcome: &mut O) -> Option<Group<L>> {
+    fn next<L: Lanes, S: Simd, O: Outcome>(&mut self, outcome: &mut O) -> Option<Group<L>> {
         while self.full == 0 && self.seen < self.rays.len() {
             let group = Group::row(&self.rays, self.seen);
-            self.seen += group.count;
-            let (Vec3s { x, y, z }, zero, one) = (group.direction, L::splat(0.0), L::splat(1.0));
-            // A zero has a sign too.
-            let (x, y, z) = (one.copysign(x).lt(zero), one.copysign(y).lt(zero), one.copysign(z).lt(zero));
-            if (x == 0 || x == L::ALL) && (y == 0 || y == L::ALL) && (z == 0 || z == L::ALL) {
+            if self.row_end <= self.seen {
+                self.look::<L, S>(&group);
+            }
+            if self.row_end <= self.seen {
+                self.sort(&group, outcome);
+            } else if self.gate == Child::NONE && !self.planes {
+                outcome.pass(self.seen..self.row_end, self.rays.t_max);
+                self.seen = self.row_end;
+            } else {
+                self.seen += group.count;
                 return Some(group);
             }
-            let all = L::ALL >> (L::COUNT - group.count);
-            let mut rest = all & zero.le(group.t_max);
-            let mut dead = all & !rest;
-            while rest != 0 {
-                let k = rest.trailing_zeros();
-                let (nx, ny, nz) = (x >> k & 1, y >> k & 1, z >> k & 1);
-                let same = rest & (x ^ nx.wrapping_sub(1)) & (y ^ ny.wrapping_sub(1)) & (z ^ nz.wrapping_sub(1));
-                let octant = nx | ny << 1 | nz << 2;
-                let queue = &mut self.queues[octant as usize % 8];
-                queue.add(&group, same);
-                self.full |= u32::from(queue.count >= L::COUNT) << octant;
-                rest &= !same;
-            }
-            while dead != 0 {
-                let ray = self.seen - group.count + dead.trailing_zeros() as usize;
-                outcome.take(ray, &Hit { t: self.rays.t_max[ray], ..Hit::NONE }, true);
-                dead &= dead - 1;
-            }
         }
+        self.gate = self.tree.root;
         let octant = if self.full != 0 {
             self.full.trailing_zeros() as usize % 8
         } else {
@@ -132,6 +153,65 @@ impl Source<'_> {
         self.full &= !(u32::from(queue.count < L::COUNT) << octant);
         Some(group)
     }
+
+    /// Sees how far rays from a group on go the same way as they lie, and where those come into the tree.
+    #[inline(always)]
+    fn look<L: Lanes, S: Simd>(&mut self, group: &Group<L>) {
+        let Some(octant) = octant(group) else { return };
+        let mut span = Span::of(group, octant);
+        self.row_end = self.seen + group.count;
+        let end = self.rays.len().min(self.seen + ROW);
+        while self.row_end < end {
+            let more = Group::<L>::row(&self.rays, self.row_end);
+            if self::octant(&more) != Some(octant) {
+                break;
+            }
+            span.include(&Span::of(&more, octant));
+            self.row_end += more.count;
+        }
+        self.gate = Hull::<S>::around(&span).gate(self.tree);
+    }
+
+    /// Puts the rays of a group into queues. Those that end before they begin are done.
+    #[inline(always)]
+    fn sort<L: Lanes, O: Outcome>(&mut self, group: &Group<L>, outcome: &mut O) {
+        let all = L::ALL >> (L::COUNT - group.count);
+        let mut rest = all & L::splat(0.0).le(group.t_max);
+        let mut dead = all & !rest;
+        let [x, y, z] = negative(group);
+        while rest != 0 {
+            let k = rest.trailing_zeros();
+            let (nx, ny, nz) = (x >> k & 1, y >> k & 1, z >> k & 1);
+            let same = rest & (x ^ nx.wrapping_sub(1)) & (y ^ ny.wrapping_sub(1)) & (z ^ nz.wrapping_sub(1));
+            let octant = nx | ny << 1 | nz << 2;
+            let queue = &mut self.queues[octant as usize % 8];
+            queue.add(group, same);
+            self.full |= u32::from(queue.count >= L::COUNT) << octant;
+            rest &= !same;
+        }
+        while dead != 0 {
+            let ray = self.seen + dead.trailing_zeros() as usize;
+            outcome.take(ray, &Hit { t: self.rays.t_max[ray], ..Hit::NONE }, true);
+            dead &= dead - 1;
+        }
+        self.seen += group.count;
+    }
+}
+
+/// Lanes whose directions are negative, by axis.
+#[inline(always)]
+fn negative<L: Lanes>(group: &Group<L>) -> [u32; 3] {
+    let (Vec3s { x, y, z }, zero, one) = (group.direction, L::splat(0.0), L::splat(1.0));
+    // A zero has a sign too.
+    [one.copysign(x).lt(zero), one.copysign(y).lt(zero), one.copysign(z).lt(zero)]
+}
+
+/// Where the directions of a group go, if all have the same signs.
+#[inline(always)]
+fn octant<L: Lanes>(group: &Group<L>) -> Option<Octant> {
+    let [x, y, z] = negative(group);
+    let same = (x == 0 || x == L::ALL) && (y == 0 || y == L::ALL) && (z == 0 || z == L::ALL);
+    same.then(|| Octant::new([x != 0, y != 0, z != 0]))
 }
 
 /// Flights by what comes next for them.
@@ -243,11 +323,12 @@ pub(super) fn trace<S: Simd, O: Outcome>(
 ) {
     let Scratch { trail, pool, queues } = scratch;
     let tree = &geometry.tree;
-    let mut source = Source { rays, queues, full: 0, seen: 0 };
-    while let Some(group) = source.next::<S::Wide, O>(outcome) {
+    let planes = !geometry.planes.is_empty();
+    let mut source = Source { rays, tree, queues, full: 0, seen: 0, row_end: 0, gate: tree.root, planes };
+    while let Some(group) = source.next::<S::Wide, S, O>(outcome) {
         let mut packet = Packet::<S::Wide, S>::new::<O>(&group, rays.t_min);
         packet.planes::<O>(&geometry.planes);
-        packet.walk::<O>(tree, trail);
+        packet.walk::<O>(tree, source.gate, trail);
         packet.disperse(rays, tree, trail, pool, outcome);
     }
     pool.make_room::<S, O>(FLIGHTS, tree, outcome);

@@ -604,6 +604,50 @@ fn what_a_ray_meets_does_not_depend_on_the_others_of_its_batch() {
     }
 }
 
+#[test]
+fn neighbours_that_come_into_the_tree_by_one_gate_meet_what_they_meet_alone() {
+    let mut random = Random(78);
+    let bare = plan(|plan| plan.mesh(random_soup(&mut random, 2000, 0.05), &[here()]));
+    let mut random = Random(78);
+    let floored = plan(|plan| {
+        plan.mesh(random_soup(&mut random, 2000, 0.05), &[here()]);
+        plan.plane(Vec3::new(0.0, -1.5, 0.0), Vec3::Y, None, &here());
+    });
+    let (mut scratch, mut hits, mut blocked) = (Scratch::default(), Hits::default(), Vec::new());
+    let (mut met, mut all) = (0, 0);
+    for geometry in [&bare, &floored] {
+        for width in [1e-3, 0.03, 0.3, 1.0] {
+            // From a point, through a window that is beside everything at times; some end before they begin, and some
+            // have been worked out wrong, which must not trouble the others.
+            let (eye, target) = (random.point().normalize() * 4.0, random.point() * 1.5);
+            let rays: Vec<Ray> = (0..300)
+                .map(|i| {
+                    let direction = (target + random.point() * width - eye).normalize();
+                    let direction = if i % 13 == 5 { direction * f32::NAN } else { direction };
+                    let origin = if i % 17 == 6 { eye * f32::NAN } else { eye };
+                    let t_max = if i % 11 == 0 { -1.0 } else { 3.0 + 4.0 * random.next() };
+                    Ray { origin, direction, t_min: 0.0, t_max, skip: Id::NONE, time: None }
+                })
+                .collect();
+            let mut trace = |rays: &[Ray], level| {
+                let rows = rows(rays);
+                hits.resize(rays.len());
+                blocked.resize(rays.len(), false);
+                geometry.closest_at(level, rows.view(0.0), &mut hits, &mut scratch);
+                geometry.occluded_at(level, rows.view(0.0), &mut blocked, &mut scratch);
+                (0..rays.len()).map(|i| (bits(&hits.get(i)), blocked[i])).collect::<Vec<_>>()
+            };
+            let alone: Vec<_> = rays.iter().flat_map(|&ray| trace(&[ray], Level::Scalar)).collect();
+            for level in simd::levels() {
+                assert_eq!(trace(&rays, level), alone, "{level:?}, width {width}");
+            }
+            met += alone.iter().filter(|(hit, _)| hit.3 != Id::NONE).count();
+            all += alone.len();
+        }
+    }
+    assert!(met * 5 > all && met * 5 < all * 4, "{met} of {all} rays meet something");
+}
+
 /// Rays of whole groups: from a point, and towards one, as a camera and a light have them; the latter leave spheres.
 fn bundles(random: &mut Random, geometry: &Geometry, scale: f32) -> Vec<Ray> {
     let mut rays = Vec::new();

@@ -58,6 +58,10 @@ pub(crate) trait Lanes: Copy {
     fn write(self, values: &mut [f32]) {
         values[..Self::COUNT].copy_from_slice(self.store().as_ref());
     }
+    /// The smallest lane of each of eight rows.
+    fn leasts(rows: [Self; 8]) -> [f32; 8];
+    /// The largest lane of each of eight rows.
+    fn mosts(rows: [Self; 8]) -> [f32; 8];
     /// The smallest lane.
     fn least(self) -> f32;
     /// The largest lane.

@@ -117,6 +117,14 @@ impl Lanes for Portable {
         self.mask(other, |a, b| a.to_bits() == b.to_bits())
     }
     #[inline(always)]
+    fn leasts(rows: [Self; 8]) -> [f32; 8] {
+        rows.map(Lanes::least)
+    }
+    #[inline(always)]
+    fn mosts(rows: [Self; 8]) -> [f32; 8] {
+        rows.map(Lanes::most)
+    }
+    #[inline(always)]
     fn least(self) -> f32 {
         self.0.into_iter().fold(f32::INFINITY, f32::min)
     }

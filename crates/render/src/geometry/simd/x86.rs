@@ -94,6 +94,26 @@ macro_rules! arithmetic {
     };
 }
 
+/// Each of eight rows of eight lanes made one number, by an operation on two.
+macro_rules! across {
+    ($rows:expr, $both:ident) => {{
+        // What is left of two rows in one, of four, and of eight.
+        macro_rules! pair {
+            ($x:expr, $y:expr, $low:literal, $high:literal) => {
+                $both(_mm256_shuffle_ps::<$low>($x, $y), _mm256_shuffle_ps::<$high>($x, $y))
+            };
+        }
+        let [a, b, c, d, e, f, g, h] = $rows;
+        let (ab, cd) = (pair!(a, b, 0x44, 0xee), pair!(c, d, 0x44, 0xee));
+        let (ef, gh) = (pair!(e, f, 0x44, 0xee), pair!(g, h, 0x44, 0xee));
+        let (low, high) = (pair!(ab, cd, 0x88, 0xdd), pair!(ef, gh, 0x88, 0xdd));
+        let all = $both(_mm256_permute2f128_ps::<0x20>(low, high), _mm256_permute2f128_ps::<0x31>(low, high));
+        let mut out = [0.0; 8];
+        _mm256_storeu_ps(out.as_mut_ptr(), all);
+        out
+    }};
+}
+
 macro_rules! arithmetic256 {
     () => {
         arithmetic!(
@@ -131,6 +151,14 @@ macro_rules! arithmetic256 {
                 }
             }
             lines
+        }
+        #[inline(always)]
+        fn leasts([a, b, c, d, e, f, g, h]: [Self; 8]) -> [f32; 8] {
+            unsafe { across!([a.0, b.0, c.0, d.0, e.0, f.0, g.0, h.0], _mm256_min_ps) }
+        }
+        #[inline(always)]
+        fn mosts([a, b, c, d, e, f, g, h]: [Self; 8]) -> [f32; 8] {
+            unsafe { across!([a.0, b.0, c.0, d.0, e.0, f.0, g.0, h.0], _mm256_max_ps) }
         }
         #[inline(always)]
         fn copysign(self, sign: Self) -> Self {
@@ -329,6 +357,13 @@ impl Simd for Avx512 {
 #[derive(Clone, Copy)]
 pub(crate) struct Wide(__m512);
 
+impl Wide {
+    #[inline(always)]
+    fn halves(self) -> [__m256; 2] {
+        unsafe { [_mm512_castps512_ps256(self.0), _mm512_extractf32x8_ps::<1>(self.0)] }
+    }
+}
+
 impl Lanes for Wide {
     arithmetic!(
         16,
@@ -367,6 +402,28 @@ impl Lanes for Wide {
             }
         }
         lines
+    }
+    #[inline(always)]
+    fn leasts(rows: [Self; 8]) -> [f32; 8] {
+        unsafe {
+            let mut lanes = [_mm256_setzero_ps(); 8];
+            for i in 0..8 {
+                let [low, high] = rows[i].halves();
+                lanes[i] = _mm256_min_ps(low, high);
+            }
+            across!(lanes, _mm256_min_ps)
+        }
+    }
+    #[inline(always)]
+    fn mosts(rows: [Self; 8]) -> [f32; 8] {
+        unsafe {
+            let mut lanes = [_mm256_setzero_ps(); 8];
+            for i in 0..8 {
+                let [low, high] = rows[i].halves();
+                lanes[i] = _mm256_max_ps(low, high);
+            }
+            across!(lanes, _mm256_max_ps)
+        }
     }
     #[inline(always)]
     fn copysign(self, sign: Self) -> Self {
