@@ -1,5 +1,7 @@
 //! Tables of 256 entries, laid out for the ways in which the number types read them.
 
+use std::ops::{BitOr, Shl};
+
 /// 256 bytes. [`crate::Real::lookup`] reads it.
 #[derive(Debug, Clone, PartialEq)]
 #[repr(C, align(64))]
@@ -55,31 +57,34 @@ impl FloatTable {
     }
 }
 
-/// Tables that hash the eight corners of a cell with seven reads, each entry with what stands after it, repeated so that
-/// the sum of two bytes is an index.
+/// Tables that hash the eight corners of a cell with eight reads, none of which waits for more than one other.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CornerTables {
-    /// The permutation: an entry in the low byte, the next one in the high byte.
-    pairs: [u16; 512],
+    /// What the permutation makes of y and of what it makes of x, in rows of y from 0 to 256 for each x from 0 to 256: with the
+    /// neighbours of a column stand those of the columns beside it.
+    pub columns: Box<[u8; Self::ROW * Self::ROW]>,
     /// The edge codes of the corners.
     pub edges: ColumnCodes,
     /// How their edges are chosen: see [`choice_code`].
     pub choices: ColumnCodes,
+    /// Which parts of the offsets they add: see [`part_code`].
+    pub parts: ColumnCodes<u64>,
 }
 
 /// For the columns (x, y), (x, y + 1), (x + 1, y), (x + 1, y + 1), 512 entries each: the codes of an entry at the column's
-/// lower end and of the next one at its upper end, four bits each, eight bits further up for each column.
+/// lower end and of the next one at its upper end, an eighth of the bits each, further up for each column.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ColumnCodes([u32; 2048]);
+pub(crate) struct ColumnCodes<T = u32>(pub [T; 2048]);
 
-impl ColumnCodes {
+impl<T: From<u8> + BitOr<Output = T> + Shl<usize, Output = T>> ColumnCodes<T> {
     /// From the code of an entry at a corner, whose ends along x, y and z are 0 or 1.
-    fn new(code: impl Fn(usize, [u32; 3]) -> u8) -> ColumnCodes {
+    fn new(code: impl Fn(usize, [u32; 3]) -> u8) -> Self {
+        let bits = size_of::<T>();
         ColumnCodes(std::array::from_fn(|i| {
-            let (entry, column) = (i % 256, i as u32 / 512);
-            let [x, y] = [column >> 1, column & 1];
-            let codes = code(entry, [x, y, 0]) | code((entry + 1) % 256, [x, y, 1]) << 4;
-            u32::from(codes) << (8 * column)
+            let (entry, column) = (i % 256, i / 512);
+            let [x, y] = [column as u32 >> 1, column as u32 & 1];
+            let (lower, upper) = (T::from(code(entry, [x, y, 0])), T::from(code((entry + 1) % 256, [x, y, 1])));
+            (lower | upper << bits) << (2 * bits * column)
         }))
     }
 }
@@ -98,28 +103,30 @@ fn choice_code(edge_code: u8, [x, y, z]: [u32; 3]) -> u8 {
     component(0, x) | component(2, z) << 2
 }
 
+/// Which two of sixteen numbers the corner adds, four bits each: the offsets from the lower corner along z, y and x and one
+/// more number, those from the upper corner, and the negatives of these eight.
+fn part_code(edge_code: u8, ends: [u32; 3]) -> u8 {
+    let edge = <f32 as crate::Real>::edge(crate::Integer::constant(i32::from(edge_code)));
+    let part = |axis: usize| (2 - axis as u8) | (ends[axis] as u8) << 2 | u8::from(edge[axis] < 0.0) << 3;
+    let (first, second) = (if edge[0] == 0.0 { 1 } else { 0 }, if edge[2] == 0.0 { 1 } else { 2 });
+    part(first) | part(second) << 4
+}
+
 impl CornerTables {
+    /// The columns of a row.
+    pub const ROW: usize = 257;
+
     /// From the permutation, and its edge codes as [`crate::basis::Tables`] has them.
     pub fn new(permutation: &PairTable, edges: &ByteTable) -> Self {
         let edge = |entry: usize| edges.bytes[entry] & 15;
+        let twice = [permutation.bytes, permutation.bytes];
+        let row = |x: usize| &twice.as_flattened()[usize::from(permutation.bytes[x % 256])..][..Self::ROW];
+        let columns = (0..Self::ROW).map(row).collect::<Vec<_>>().concat();
         CornerTables {
-            pairs: std::array::from_fn(|i| permutation.pairs[i % 256] as u16),
+            columns: columns.into_boxed_slice().try_into().expect("whole rows"),
             edges: ColumnCodes::new(|entry, _| edge(entry)),
             choices: ColumnCodes::new(|entry, ends| choice_code(edge(entry), ends)),
+            parts: ColumnCodes::new(|entry, ends| part_code(edge(entry), ends)),
         }
-    }
-
-    /// Codes of a cell's corners, four bits each: from the lowest on (0, 0, 0), (0, 0, 1), (0, 1, 0), … (1, 1, 1).
-    #[inline(always)]
-    pub fn hash(&self, codes: &ColumnCodes, [x, y, z]: [u8; 3]) -> u32 {
-        // The tables from y on and from z on: the compiler sees that bytes are within, and adds no index twice.
-        let pairs: &[u16; 256] = self.pairs[usize::from(y)..].first_chunk().expect("y is below 256");
-        let codes: &[u32; 1792] = codes.0[usize::from(z)..].first_chunk().expect("z is below 256");
-        let pair = self.pairs[usize::from(x)];
-        let (left, right) = (pairs[usize::from(pair as u8)], pairs[usize::from(pair >> 8)]);
-        codes[usize::from(left as u8)]
-            | codes[512 + usize::from(left >> 8)]
-            | codes[1024 + usize::from(right as u8)]
-            | codes[1536 + usize::from(right >> 8)]
     }
 }

@@ -34,7 +34,7 @@ fn check(name: &str, expected: &[f32], fill: impl Fn(Level, std::ops::Range<usiz
         let wrong = (0..expected.len()).find(|&i| !same(values[i], expected[i]));
         assert_eq!(wrong, None, "{name} at {level:?}: {:?}", wrong.map(|i| (values[i], expected[i])));
         let mut start = 0;
-        for length in (0..140).chain([255, 256, 257, 400]) {
+        for length in (0..140).chain([255, 256, 257, 400, 512, 520, 536, 600]) {
             let mut values = vec![f32::MAX; length];
             fill(level, start..start + length, &mut values);
             let wrong = (0..length).find(|&i| !same(values[i], expected[start + i]));

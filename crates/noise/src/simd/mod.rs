@@ -205,9 +205,6 @@ pub(crate) struct Lanes {
 }
 
 impl Terms<'_> {
-    /// The noise alone.
-    pub const ONE: Terms<'static> = Terms { absolute: false, frequencies: &[1.0], amplitudes: &[1.0], slopes: &[1.0] };
-
     /// How many octaves.
     #[inline(always)]
     pub fn octaves(&self) -> usize {
@@ -217,7 +214,7 @@ impl Terms<'_> {
 
 /// How many points the kernels made by hand take at a time with the instructions of a level, and at most.
 pub(crate) fn step(level: Level) -> usize {
-    if level.min(machine_level()) == Level::Avx512 { MOST_STEP } else { MOST_STEP / 2 }
+    if level.min(machine_level()) == Level::Avx512 { MOST_STEP } else { 8 }
 }
 pub(crate) const MOST_STEP: usize = 64;
 

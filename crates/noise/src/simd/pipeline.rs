@@ -1,6 +1,6 @@
 //! The order in which the kernels made by hand work: step by step, hashes one step ahead of blends.
 //!
-//! Hashing reads tables, blending multiplies and adds. The two use other ports of the machine, so the points of the next
+//! Hashing reads tables, blending multiplies and adds. The two use other ports of the machine, so the points of a later
 //! step are hashed beside the blends of the current one, and neither waits for the other: across blocks and octaves too.
 
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
@@ -47,27 +47,36 @@ impl Octave {
 
 /// A kernel of two halves, for `STEP` points at a time.
 pub(super) trait Halves<const STEP: usize> {
-    /// What hashing hands to blending.
+    /// So many steps before a blend its points are hashed.
+    const LEAD: usize;
+    /// What hashing hands to blending: room for the codes of so many steps and one.
     type Codes;
-    /// Hashes the cells of the points, times the frequency, for so many outputs.
-    fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>) -> Self::Codes;
-    /// Adds an octave at the points whose `codes` are given, which become those of `next`. `USE` is [`ALONE`] where the
-    /// frequencies and the amplitude are 1 and the sums are overwritten (no zero is negative), [`PLAIN`] or [`ABSOLUTE`].
+    /// The room.
+    fn room(&self) -> Self::Codes;
+    /// Hashes the cells of the points, times the frequency, for so many outputs. Steps are numbered in their order.
+    fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>, codes: &mut Self::Codes, step: usize);
+    /// Adds an octave at the points of a step that has been hashed, and hashes those of the step [`Halves::LEAD`] later. `USE` is
+    /// [`ALONE`] where the frequencies and the amplitude are 1 and the sums are overwritten (no zero is negative), [`PLAIN`]
+    /// or [`ABSOLUTE`].
     fn step<const USE: u8, const N: usize>(
         &self,
         octave: &Octave,
         point: Point<STEP>,
         sums: Sums<STEP, N>,
         codes: &mut Self::Codes,
-        next: (f32, Point<STEP>),
+        step: usize,
+        later: (f32, Point<STEP>),
     );
-    /// [`Halves::step`] without a next one.
+    /// Hashes what there is left to hash, after so many steps.
+    fn complete<const N: usize>(&self, codes: &mut Self::Codes, steps: usize);
+    /// [`Halves::step`] without a later one.
     fn finish<const USE: u8, const N: usize>(
         &self,
         octave: &Octave,
         point: Point<STEP>,
         sums: Sums<STEP, N>,
         codes: &Self::Codes,
+        step: usize,
     );
     /// Takes the points of a step apart into their coordinates.
     fn take_apart(points: &[[f32; 3]; STEP], coordinates: &mut [[f32; STEP]; 3]);
@@ -106,14 +115,32 @@ fn alone<H: Halves<STEP>, const STEP: usize, const N: usize>(
     assert!(x.len() == steps && y.len() == steps && z.len() == steps);
     let octave = Octave { frequency: 1.0, amplitude: 1.0, slope: 1.0 };
     let point = |i: usize| [&x[i], &y[i], &z[i]];
-    let last = steps - 1;
-    let mut codes = halves.hash::<N>(1.0, point(0));
-    for i in 0..last {
-        prefetch([x, y, z], i + AHEAD / STEP);
-        let next = (1.0, point(i + 1));
-        halves.step::<ALONE, N>(&octave, point(i), sums(outputs, i), &mut codes, next);
+    let mut codes = halves.room();
+    if steps < H::LEAD {
+        for i in 0..steps {
+            halves.hash::<N>(1.0, point(i), &mut codes, i);
+        }
+        halves.complete::<N>(&mut codes, steps);
+        for i in 0..steps {
+            halves.finish::<ALONE, N>(&octave, point(i), sums(outputs, i), &codes, i);
+        }
+        return;
     }
-    halves.finish::<ALONE, N>(&octave, point(last), sums(outputs, last), &codes);
+    // (Loops of constant length are unrolled, and a single step is no loop.)
+    for i in 0..H::LEAD {
+        halves.hash::<N>(1.0, point(i), &mut codes, i);
+    }
+    let hashed_by_then = steps - H::LEAD;
+    for i in 0..hashed_by_then {
+        prefetch([x, y, z], i + AHEAD / STEP);
+        let later = (1.0, point(i + H::LEAD));
+        halves.step::<ALONE, N>(&octave, point(i), sums(outputs, i), &mut codes, i, later);
+    }
+    halves.complete::<N>(&mut codes, steps);
+    for i in 0..H::LEAD {
+        let i = hashed_by_then + i;
+        halves.finish::<ALONE, N>(&octave, point(i), sums(outputs, i), &codes, i);
+    }
 }
 
 /// The noise itself at points that are not in columns yet, a multiple of `STEP` of them; returns how many. They are taken apart
@@ -126,22 +153,36 @@ pub(super) fn at_points<H: Halves<STEP>, const STEP: usize>(
 ) -> usize {
     let (points, outputs) = (points.as_chunks::<STEP>().0, values.as_chunks_mut::<STEP>().0);
     assert_eq!(points.len(), outputs.len());
-    let Some(last) = points.len().checked_sub(1) else { return 0 };
     let octave = Octave { frequency: 1.0, amplitude: 1.0, slope: 1.0 };
-    // Those of this step, and those of the next one.
-    let mut rooms = [Room([[0.0; STEP]; 3]), Room([[0.0; STEP]; 3])];
-    H::take_apart(&points[0], &mut rooms[0].0);
-    let mut codes = halves.hash::<1>(1.0, rooms[0].point());
-    for i in 0..last {
-        prefetch([points], i + AHEAD / STEP);
-        let next = (i + 1) % 2;
-        H::take_apart(&points[i + 1], &mut rooms[next].0);
-        let (point, next) = (rooms[i % 2].point(), rooms[next].point());
-        halves.step::<ALONE, 1>(&octave, point, [&mut outputs[i]], &mut codes, (1.0, next));
+    let steps = points.len();
+    if steps == 0 {
+        return 0;
     }
-    halves.finish::<ALONE, 1>(&octave, rooms[last % 2].point(), [&mut outputs[last]], &codes);
-    points.len() * STEP
+    // Those of this step, and of the later ones up to that which is hashed beside it.
+    const { assert!(H::LEAD < ROOMS) };
+    let mut rooms = [const { Room([[0.0; STEP]; 3]) }; ROOMS];
+    let mut codes = halves.room();
+    for i in 0..steps.min(H::LEAD) {
+        H::take_apart(&points[i], &mut rooms[i].0);
+        halves.hash::<1>(1.0, rooms[i].point(), &mut codes, i);
+    }
+    let hashed_by_then = steps.saturating_sub(H::LEAD);
+    for i in 0..hashed_by_then {
+        prefetch([points], i + AHEAD / STEP);
+        let later = i + H::LEAD;
+        H::take_apart(&points[later], &mut rooms[later % ROOMS].0);
+        let (point, later) = (rooms[i % ROOMS].point(), rooms[later % ROOMS].point());
+        halves.step::<ALONE, 1>(&octave, point, [&mut outputs[i]], &mut codes, i, (1.0, later));
+    }
+    halves.complete::<1>(&mut codes, steps);
+    for i in hashed_by_then..steps {
+        halves.finish::<ALONE, 1>(&octave, rooms[i % ROOMS].point(), [&mut outputs[i]], &codes, i);
+    }
+    steps * STEP
 }
+
+/// How many steps are taken apart at once.
+const ROOMS: usize = 4;
 
 /// The coordinates of a step. (Aligned, or vectors may straddle cache lines.)
 #[repr(align(64))]
@@ -169,29 +210,53 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
     for output in outputs.iter_mut() {
         output[..steps * STEP].fill(0.0);
     }
-    if terms.octaves() == 0 {
+    let Some(last) = terms.octaves().checked_sub(1) else { return };
+    let mut codes = halves.room();
+    if steps < H::LEAD {
+        for index in 0..terms.octaves() {
+            for i in 0..steps {
+                halves.hash::<N>(terms.frequencies[index], point(i), &mut codes, i);
+            }
+            halves.complete::<N>(&mut codes, steps);
+            for i in 0..steps {
+                halves.finish::<USE, N>(&Octave::of(terms, index), point(i), sums(outputs, i), &codes, i);
+            }
+        }
         return;
     }
-    let last = steps - 1;
-    let mut codes = halves.hash::<N>(terms.frequencies[0], point(0));
-    for start in (0..steps).step_by(BLOCK / STEP) {
-        let end = steps.min(start + BLOCK / STEP);
+    for i in 0..H::LEAD {
+        halves.hash::<N>(terms.frequencies[0], point(i), &mut codes, i);
+    }
+    let (mut start, mut step) = (0, 0);
+    while start < steps {
+        // (None is so short that the hashes would be ahead of the next one.)
+        let end = if steps - start < BLOCK / STEP + H::LEAD { steps } else { start + BLOCK / STEP };
         for index in 0..terms.octaves() {
             let octave = Octave::of(terms, index);
-            // After the block comes its next octave, or the next block (after the last one, anything).
-            let after = match terms.frequencies.get(index + 1) {
+            // After the block comes its next octave, or the next block.
+            let (frequency, after) = match terms.frequencies.get(index + 1) {
                 Some(&frequency) => (frequency, start),
-                None => (terms.frequencies[0], last.min(end)),
+                None => (terms.frequencies[0], end),
             };
-            for i in start..end {
+            let hashed_by_then = if index == last && end == steps { end - H::LEAD } else { end };
+            for i in start..hashed_by_then {
                 if index == 0 {
                     prefetch([x, y, z], i + AHEAD / STEP);
                 }
-                let (frequency, next) = if i + 1 == end { after } else { (octave.frequency, i + 1) };
-                let next = (frequency, point(next));
-                halves.step::<USE, N>(&octave, point(i), sums(outputs, i), &mut codes, next);
+                let later = i + H::LEAD;
+                let later = if later < end { (octave.frequency, later) } else { (frequency, later - end + after) };
+                let later = (later.0, point(later.1));
+                halves.step::<USE, N>(&octave, point(i), sums(outputs, i), &mut codes, step, later);
+                step += 1;
             }
         }
+        start = end;
+    }
+    halves.complete::<N>(&mut codes, step + H::LEAD);
+    for i in 0..H::LEAD {
+        let point = point(steps - H::LEAD + i);
+        let sums = sums(outputs, steps - H::LEAD + i);
+        halves.finish::<USE, N>(&Octave::of(terms, last), point, sums, &codes, step + i);
     }
 }
 
@@ -200,7 +265,7 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
 fn prefetch<T, const N: usize>(slices: [&[T]; N], step: usize) {
     for slice in slices {
         let numbers = slice.as_ptr().wrapping_add(step).cast::<i8>();
-        for line in 0..size_of::<T>() / 64 {
+        for line in 0..size_of::<T>().div_ceil(64) {
             // SAFETY: nothing is read.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(numbers.wrapping_add(64 * line)) };
         }

@@ -2,7 +2,8 @@
 
 use std::arch::x86_64::*;
 
-use super::{F32x8, I32x8, chosen};
+use super::improved::{Nothing, blend as blend_octaves};
+use super::{F32x8, I32x8, corners};
 use crate::basis::Tables;
 use crate::number::Real;
 use crate::simd::{LaneTerms, Vector};
@@ -11,15 +12,16 @@ use crate::simd::{LaneTerms, Vector};
 /// written one by one, would stall.)
 #[target_feature(enable = "avx2,fma")]
 pub(in crate::simd) fn improved(tables: &Tables, x: f32, y: f32, z: f32) -> f32 {
-    noise(tables, x, y, z)
-}
-
-/// The same, to be compiled for more instructions too.
-#[inline]
-#[target_feature(enable = "avx2")]
-pub(in crate::simd) fn noise(tables: &Tables, x: f32, y: f32, z: f32) -> f32 {
-    let (codes, offset) = locate(tables, x, y, z);
-    blend(dots(codes, offset), offset)
+    let tables = &tables.corners;
+    // (Along z, y, x, so that what is blended last comes first.)
+    let position = _mm_setr_ps(z, y, x, 0.0);
+    let floor = _mm_floor_ps(position);
+    let offset = _mm_sub_ps(position, floor);
+    let (column, z) = corners::column(_mm_cvttps_epi32(floor));
+    // SAFETY: the column is that of a cell.
+    let codes = unsafe { corners::hash(tables, &tables.parts, column, z) };
+    // (The sum with zero makes −0 to +0.)
+    blend(dots(codes, offset), offset) + 0.0
 }
 
 /// The sum at a point, with its octaves in the lanes.
@@ -36,15 +38,15 @@ pub(in crate::simd) fn sum(tables: &Tables, terms: &LaneTerms, x: f32, y: f32, z
     sum
 }
 
-/// The sum and the first lanes' noises, times their amplitudes, one after the other.
+/// The sum and the first lanes' noises, times their amplitudes, one after the other. (A sum that began with 0 is never −0.)
 #[inline]
 #[target_feature(enable = "avx2")]
 pub(in crate::simd) fn add_lanes(mut sum: f32, noises: F32x8, amplitudes: F32x8, absolute: bool, count: usize) -> f32 {
     let noises = if absolute { noises.abs() } else { noises };
-    let mut parts = [0.0; 8];
-    (noises * amplitudes).store(&mut parts);
-    for part in &parts[..count] {
-        sum += part;
+    let mut parts = (noises * amplitudes).0;
+    for _ in 0..count {
+        sum += _mm256_cvtss_f32(parts);
+        parts = _mm256_permutevar8x32_ps(parts, _mm256_setr_epi32(1, 2, 3, 4, 5, 6, 7, 0));
     }
     sum
 }
@@ -54,20 +56,25 @@ pub(in crate::simd) fn add_lanes(mut sum: f32, noises: F32x8, amplitudes: F32x8,
 #[target_feature(enable = "avx2,fma")]
 fn octaves(tables: &Tables, frequencies: F32x8, count: usize, point: [f32; 3]) -> F32x8 {
     let mut offset = [frequencies; 3];
-    let mut cells = [[0u32; 8]; 3];
+    let mut cells = [_mm256_setzero_si256(); 3];
     for axis in 0..3 {
         let position = F32x8::splat(point[axis]) * frequencies;
         let floor = position.floor();
         offset[axis] = position - floor;
-        // SAFETY: there is room for eight.
-        unsafe { _mm256_storeu_si256(cells[axis].as_mut_ptr().cast(), floor.to_int().0) };
+        cells[axis] = floor.to_int().0;
     }
+    let [x, y, z] = cells;
+    let (mut columns, mut ends) = ([0u32; 8], [0u32; 8]);
+    // SAFETY: there is room for eight.
+    unsafe {
+        _mm256_storeu_si256(columns.as_mut_ptr().cast(), corners::columns(x, y));
+        _mm256_storeu_si256(ends.as_mut_ptr().cast(), z);
+    }
+    let tables = &tables.corners;
     let hash = |lane: usize| {
         if lane < count {
-            tables
-                .corners
-                .hash(&tables.corners.choices, [cells[0][lane] as u8, cells[1][lane] as u8, cells[2][lane] as u8])
-                as i32
+            // SAFETY: the columns are those of cells.
+            unsafe { corners::hash(tables, &tables.choices, columns[lane], ends[lane] as u8) as i32 }
         } else {
             0
         }
@@ -76,44 +83,39 @@ fn octaves(tables: &Tables, frequencies: F32x8, count: usize, point: [f32; 3]) -
     let low = _mm_setr_epi32(hash(0), hash(1), hash(2), hash(3));
     let high = if count > 4 { _mm_setr_epi32(hash(4), hash(5), hash(6), hash(7)) } else { _mm_setzero_si128() };
     let codes = I32x8(_mm256_set_m128i(high, low));
-    super::improved::blend(codes, offset) + F32x8::constant(0.0)
-}
-
-/// The codes of the cell's corners in every lane, and the point's offset in the cell.
-#[inline]
-#[target_feature(enable = "avx2")]
-fn locate(tables: &Tables, x: f32, y: f32, z: f32) -> (__m256i, __m128) {
-    let position = _mm_setr_ps(x, y, z, 0.0);
-    let floor = _mm_floor_ps(position);
-    let cell = _mm_cvttps_epi32(floor);
-    let cell = [_mm_cvtsi128_si32(cell), _mm_extract_epi32::<1>(cell), _mm_extract_epi32::<2>(cell)];
-    let codes = tables.corners.hash(&tables.corners.choices, [cell[0] as u8, cell[1] as u8, cell[2] as u8]);
-    (_mm256_set1_epi32(codes as i32), _mm_sub_ps(position, floor))
+    blend_octaves(codes, offset, &mut Nothing)
 }
 
 /// The noise from the gradients' parts at the corners: they are halved axis by axis, x, y, z.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn blend(dots: __m256, offset: __m128) -> f32 {
+pub(in crate::simd) fn blend(dots: __m256, offset: __m128) -> f32 {
     let curve = fade(offset);
     let (left, right) = (_mm256_castps256_ps128(dots), _mm256_extractf128_ps::<1>(dots));
-    let sides = lerp(_mm_permute_ps::<0x00>(curve), left, right);
-    let edges = lerp(_mm_permute_ps::<0x55>(curve), sides, _mm_movehl_ps(sides, sides));
-    let value = lerp(_mm_permute_ps::<0xaa>(curve), edges, _mm_movehdup_ps(edges));
-    _mm_cvtss_f32(_mm_add_ps(value, _mm_setzero_ps()))
+    let sides = lerp(_mm_permute_ps::<0xaa>(curve), left, right);
+    let edges = lerp(_mm_movehdup_ps(curve), sides, _mm_movehl_ps(sides, sides));
+    _mm_cvtss_f32(lerp(curve, edges, _mm_movehdup_ps(edges)))
 }
 
-/// What the corners contribute, in the order of the codes: x changes last, z first.
+/// What the corners contribute: each picks two of eight numbers, and their signs, and adds them.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn dots(codes: __m256i, offset: __m128) -> __m256 {
-    let (offset, sign) = (_mm256_set_m128(offset, offset), _mm256_set1_ps(-0.0));
-    let x = _mm256_sub_ps(_mm256_permute_ps::<0x00>(offset), _mm256_setr_ps(0., 0., 0., 0., 1., 1., 1., 1.));
-    let y = _mm256_sub_ps(_mm256_permute_ps::<0x55>(offset), _mm256_setr_ps(0., 0., 1., 1., 0., 0., 1., 1.));
-    let z = _mm256_sub_ps(_mm256_permute_ps::<0xaa>(offset), _mm256_setr_ps(0., 1., 0., 1., 0., 1., 0., 1.));
-    let (x, y, z) = (_mm256_or_ps(x, sign), _mm256_andnot_ps(sign, y), _mm256_or_ps(z, sign));
-    let code = _mm256_srlv_epi32(codes, _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28));
-    chosen(code, _mm256_xor_ps(x, y), y, _mm256_xor_ps(z, y))
+fn dots(codes: u64, offset: __m128) -> __m256 {
+    let parts = parts(offset);
+    let first = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(codes as i64));
+    let pick = |which: __m256i, sign: __m256i| {
+        let sign = _mm256_and_ps(_mm256_castsi256_ps(sign), _mm256_set1_ps(-0.0));
+        _mm256_xor_ps(_mm256_permutevar8x32_ps(parts, which), sign)
+    };
+    let second = _mm256_srli_epi32::<4>(first);
+    _mm256_add_ps(pick(first, _mm256_slli_epi32::<28>(first)), pick(second, _mm256_slli_epi32::<24>(first)))
+}
+
+/// The offsets along each axis from the lower corner, and those from the upper one.
+#[inline]
+#[target_feature(enable = "avx2")]
+pub(in crate::simd) fn parts(offset: __m128) -> __m256 {
+    _mm256_set_m128(_mm_sub_ps(offset, _mm_set1_ps(1.0)), offset)
 }
 
 #[inline]

@@ -39,12 +39,19 @@ pub(in crate::simd) fn at_points(tables: &Tables, points: &[[f32; 3]], values: &
 struct InRegisters<'a>(&'a Tables);
 
 impl Halves<STEP> for InRegisters<'_> {
+    /// (The registers hold the codes of one step.)
+    const LEAD: usize = 1;
     type Codes = [__m512i; 4];
 
     #[inline(always)]
-    fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>) -> Self::Codes {
+    fn room(&self) -> Self::Codes {
         // SAFETY, here and below: the machine has the instructions.
-        unsafe { hash::<PLAIN>(self.0, frequency, point) }
+        unsafe { [_mm512_setzero_si512(); 4] }
+    }
+
+    #[inline(always)]
+    fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>, codes: &mut Self::Codes, _step: usize) {
+        *codes = unsafe { hash::<PLAIN>(self.0, frequency, point) };
     }
 
     #[inline(always)]
@@ -54,12 +61,16 @@ impl Halves<STEP> for InRegisters<'_> {
         point: Point<STEP>,
         sums: Sums<STEP, N>,
         codes: &mut Self::Codes,
-        (frequency, next): (f32, Point<STEP>),
+        _step: usize,
+        (frequency, later): (f32, Point<STEP>),
     ) {
-        let next = unsafe { hash::<USE>(self.0, frequency, next) };
+        let later = unsafe { hash::<USE>(self.0, frequency, later) };
         add_step::<USE, N>(codes, octave, point, sums);
-        *codes = next;
+        *codes = later;
     }
+
+    #[inline(always)]
+    fn complete<const N: usize>(&self, _codes: &mut Self::Codes, _steps: usize) {}
 
     #[inline(always)]
     fn take_apart(points: &[[f32; 3]; STEP], [x, y, z]: &mut [[f32; STEP]; 3]) {
@@ -76,7 +87,8 @@ impl Halves<STEP> for InRegisters<'_> {
         octave: &Octave,
         point: Point<STEP>,
         sums: Sums<STEP, N>,
-        codes: &[__m512i; 4],
+        codes: &Self::Codes,
+        _step: usize,
     ) {
         if N == 4 {
             return add_step::<USE, N>(codes, octave, point, sums);

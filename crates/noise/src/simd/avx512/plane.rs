@@ -23,14 +23,23 @@ pub(in crate::simd) fn sum(tables: &Tables, terms: Option<&Terms>, [x, y]: [&[f3
 struct InPlane<'a>(&'a Tables);
 
 impl Halves<STEP> for InPlane<'_> {
+    const LEAD: usize = 1;
     /// Of the columns at the lower and at the upper end along x: see [`Tables::plane`].
     type Codes = [__m512i; 2];
 
     #[inline(always)]
-    fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>) -> Self::Codes {
+    fn room(&self) -> Self::Codes {
         // SAFETY, here and below: the machine has the instructions.
-        unsafe { hash::<PLAIN>(self.0, frequency, point) }
+        unsafe { [_mm512_setzero_si512(); 2] }
     }
+
+    #[inline(always)]
+    fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>, codes: &mut Self::Codes, _step: usize) {
+        *codes = unsafe { hash::<PLAIN>(self.0, frequency, point) };
+    }
+
+    #[inline(always)]
+    fn complete<const N: usize>(&self, _codes: &mut Self::Codes, _steps: usize) {}
 
     #[inline(always)]
     fn step<const USE: u8, const N: usize>(
@@ -39,11 +48,12 @@ impl Halves<STEP> for InPlane<'_> {
         point: Point<STEP>,
         sums: Sums<STEP, N>,
         codes: &mut Self::Codes,
-        (frequency, next): (f32, Point<STEP>),
+        step: usize,
+        (frequency, later): (f32, Point<STEP>),
     ) {
-        let next = unsafe { hash::<USE>(self.0, frequency, next) };
-        self.finish::<USE, N>(octave, point, sums, codes);
-        *codes = next;
+        let later = unsafe { hash::<USE>(self.0, frequency, later) };
+        self.finish::<USE, N>(octave, point, sums, codes, step);
+        *codes = later;
     }
 
     #[inline(always)]
@@ -53,6 +63,7 @@ impl Halves<STEP> for InPlane<'_> {
         point: Point<STEP>,
         mut sums: Sums<STEP, N>,
         codes: &Self::Codes,
+        _step: usize,
     ) {
         // (Written out, so that the shifts are by constants.)
         add_vector::<0, USE, N>(codes, octave, point, &mut sums);

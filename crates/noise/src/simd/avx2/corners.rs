@@ -1,0 +1,54 @@
+//! Hashing the corners of cells one cell at a time, by reads from tables: gathers are slower.
+
+use std::arch::asm;
+use std::arch::x86_64::*;
+use std::ops::BitOr;
+
+use crate::table::{ColumnCodes, CornerTables};
+
+/// The columns of eight cells, for [`hash`].
+#[inline]
+#[target_feature(enable = "avx2")]
+pub(super) fn columns(x: __m256i, y: __m256i) -> __m256i {
+    const { assert!(CornerTables::ROW == 257) };
+    let byte = _mm256_set1_epi32(255);
+    let (x, y) = (_mm256_and_si256(x, byte), _mm256_and_si256(y, byte));
+    _mm256_add_epi32(_mm256_add_epi32(_mm256_slli_epi32::<8>(x), x), y)
+}
+
+/// The column of one cell, given as z, y, x, in the upper half, and in the lower half its z.
+#[inline]
+#[target_feature(enable = "avx2")]
+pub(in crate::simd) fn column(cell: __m128i) -> (u32, u8) {
+    let bytes = _mm_shuffle_epi8(cell, _mm_setr_epi8(0, -1, -1, -1, 4, -1, 8, -1, -1, -1, -1, -1, -1, -1, -1, -1));
+    let products = _mm_madd_epi16(bytes, _mm_setr_epi16(1, 0, 1, CornerTables::ROW as i16, 0, 0, 0, 0));
+    let mut halves = _mm_cvtsi128_si64(products) as u64;
+    // SAFETY: this is no instruction. (The compiler would rather take the halves from the vector one by one, which is slower.)
+    unsafe { asm!("/* {0} */", inout(reg) halves, options(pure, nomem, nostack, preserves_flags)) };
+    ((halves >> 32) as u32, halves as u8)
+}
+
+/// Codes of a cell's corners, an eighth of the bits each: from the lowest on (0, 0, 0), (0, 0, 1), (0, 1, 0), … (1, 1, 1).
+///
+/// # Safety
+/// The column is one that [`columns`] or [`column`] returned.
+#[inline(always)]
+pub(in crate::simd) unsafe fn hash<T: Copy + BitOr<Output = T>>(
+    tables: &CornerTables,
+    codes: &ColumnCodes<T>,
+    column: u32,
+    z: u8,
+) -> T {
+    // Two columns with one read: reads are what there is most of.
+    // SAFETY: x and y are at most 255, and there are entries for 256.
+    let (left, right) = unsafe {
+        let columns = tables.columns.as_ptr().add(column as usize);
+        (columns.cast::<u16>().read_unaligned(), columns.add(CornerTables::ROW).cast::<u16>().read_unaligned())
+    };
+    // The codes from z on: the compiler sees that bytes are within, and adds no index twice.
+    let codes: &[T; 1792] = codes.0[usize::from(z)..].first_chunk().expect("z is below 256");
+    codes[usize::from(left as u8)]
+        | codes[512 + usize::from(left >> 8)]
+        | codes[1024 + usize::from(right as u8)]
+        | codes[1536 + usize::from(right >> 8)]
+}
