@@ -207,12 +207,13 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
     let steps = outputs[0].len() / STEP;
     assert!(x.len() == steps && y.len() == steps && z.len() == steps);
     let point = |i: usize| [&x[i], &y[i], &z[i]];
-    for output in outputs.iter_mut() {
-        output[..steps * STEP].fill(0.0);
-    }
-    let Some(last) = terms.octaves().checked_sub(1) else { return };
+    let Some(last) = terms.octaves().checked_sub(1) else {
+        outputs.iter_mut().for_each(|output| output[..steps * STEP].fill(0.0));
+        return;
+    };
     let mut codes = halves.room();
     if steps < H::LEAD {
+        outputs.iter_mut().for_each(|output| output[..steps * STEP].fill(0.0));
         for index in 0..terms.octaves() {
             for i in 0..steps {
                 halves.hash::<N>(terms.frequencies[index], point(i), &mut codes, i);
@@ -231,6 +232,9 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
     while start < steps {
         // (None is so short that the hashes would be ahead of the next one.)
         let end = if steps - start < BLOCK / STEP + H::LEAD { steps } else { start + BLOCK / STEP };
+        for output in outputs.iter_mut() {
+            output[start * STEP..end * STEP].fill(0.0);
+        }
         for index in 0..terms.octaves() {
             let octave = Octave::of(terms, index);
             // After the block comes its next octave, or the next block.
