@@ -103,13 +103,15 @@ fn choice_code(edge_code: u8, [x, y, z]: [u32; 3]) -> u8 {
     component(0, x) | component(2, z) << 2
 }
 
-/// Which two of sixteen numbers the corner adds, four bits each: the offsets from the lower corner along z, y and x and one
-/// more number, those from the upper corner, and the negatives of these eight.
+/// Which two numbers the corner adds, four bits each. Of the first, the offset along x or y: bit 0 says whether it is that from the upper
+/// corner, bit 1 whether it is along y, bit 2 whether it is negative. Of the second, along z or y, the same.
 fn part_code(edge_code: u8, ends: [u32; 3]) -> u8 {
     let edge = <f32 as crate::Real>::edge(crate::Integer::constant(i32::from(edge_code)));
-    let part = |axis: usize| (2 - axis as u8) | (ends[axis] as u8) << 2 | u8::from(edge[axis] < 0.0) << 3;
-    let (first, second) = (if edge[0] == 0.0 { 1 } else { 0 }, if edge[2] == 0.0 { 1 } else { 2 });
-    part(first) | part(second) << 4
+    let part = |outer: usize| {
+        let axis = if edge[outer] == 0.0 { 1 } else { outer };
+        ends[axis] as u8 | u8::from(axis == 1) << 1 | u8::from(edge[axis] < 0.0) << 2
+    };
+    part(0) | part(2) << 4
 }
 
 impl CornerTables {

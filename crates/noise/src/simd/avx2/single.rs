@@ -7,21 +7,32 @@ use super::{F32x8, I32x8, corners};
 use crate::basis::Tables;
 use crate::number::Real;
 use crate::simd::{LaneTerms, Vector};
+use crate::table::CornerTables;
 
 /// The noise at a point. (The coordinates come one by one, in registers: reading them as a vector, just after they were
 /// written one by one, would stall.)
 #[target_feature(enable = "avx2,fma")]
 pub(in crate::simd) fn improved(tables: &Tables, x: f32, y: f32, z: f32) -> f32 {
-    let tables = &tables.corners;
-    // (Along z, y, x, so that what is blended last comes first.)
-    let position = _mm_setr_ps(z, y, x, 0.0);
-    let floor = _mm_floor_ps(position);
-    let offset = _mm_sub_ps(position, floor);
-    let (column, z) = corners::column(_mm_cvttps_epi32(floor));
+    let position = position(x, y, z);
+    noise(&tables.corners, position, _mm_cvttps_epi32(_mm_floor_ps(position)))
+}
+
+/// A point's coordinates along z, y, x, so that what is blended last comes first.
+#[inline]
+#[target_feature(enable = "avx2")]
+pub(in crate::simd) fn position(x: f32, y: f32, z: f32) -> __m128 {
+    _mm_setr_ps(z, y, x, 0.0)
+}
+
+/// The noise at a point whose cell is known. (Cell and offset are found apart: everything else waits for the cell.)
+#[inline]
+#[target_feature(enable = "avx2")]
+pub(in crate::simd) fn noise(tables: &CornerTables, position: __m128, cell: __m128i) -> f32 {
+    let (column, z) = corners::column(cell);
     // SAFETY: the column is that of a cell.
     let codes = unsafe { corners::hash(tables, &tables.parts, column, z) };
-    // (The sum with zero makes −0 to +0.)
-    blend(dots(codes, offset), offset) + 0.0
+    let offset = _mm_sub_ps(position, _mm_floor_ps(position));
+    blend(dots(codes, offset), offset)
 }
 
 /// The sum at a point, with its octaves in the lanes.
@@ -89,7 +100,7 @@ fn octaves(tables: &Tables, frequencies: F32x8, count: usize, point: [f32; 3]) -
 /// The noise from the gradients' parts at the corners: they are halved axis by axis, x, y, z.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub(in crate::simd) fn blend(dots: __m256, offset: __m128) -> f32 {
+fn blend(dots: __m256, offset: __m128) -> f32 {
     let curve = fade(offset);
     let (left, right) = (_mm256_castps256_ps128(dots), _mm256_extractf128_ps::<1>(dots));
     let sides = lerp(_mm_permute_ps::<0xaa>(curve), left, right);
@@ -97,25 +108,21 @@ pub(in crate::simd) fn blend(dots: __m256, offset: __m128) -> f32 {
     _mm_cvtss_f32(lerp(curve, edges, _mm_movehdup_ps(edges)))
 }
 
-/// What the corners contribute: each picks two of eight numbers, and their signs, and adds them.
+/// What the corners contribute: each adds one of eight numbers, offsets along x and y, to one of eight others, along z and y. (None of
+/// them is −0, and so the noise is not.)
 #[inline]
 #[target_feature(enable = "avx2")]
 fn dots(codes: u64, offset: __m128) -> __m256 {
-    let parts = parts(offset);
+    let upper = _mm_sub_ps(offset, _mm_set1_ps(1.0));
+    let z_and_y = _mm_unpacklo_ps(offset, upper);
+    let x_and_y = _mm_shuffle_ps::<0xe4>(_mm_unpackhi_ps(offset, upper), z_and_y);
+    let both_signs = |offsets| _mm256_set_m128(_mm_sub_ps(_mm_setzero_ps(), offsets), offsets);
     let first = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(codes as i64));
-    let pick = |which: __m256i, sign: __m256i| {
-        let sign = _mm256_and_ps(_mm256_castsi256_ps(sign), _mm256_set1_ps(-0.0));
-        _mm256_xor_ps(_mm256_permutevar8x32_ps(parts, which), sign)
-    };
     let second = _mm256_srli_epi32::<4>(first);
-    _mm256_add_ps(pick(first, _mm256_slli_epi32::<28>(first)), pick(second, _mm256_slli_epi32::<24>(first)))
-}
-
-/// The offsets along each axis from the lower corner, and those from the upper one.
-#[inline]
-#[target_feature(enable = "avx2")]
-pub(in crate::simd) fn parts(offset: __m128) -> __m256 {
-    _mm256_set_m128(_mm_sub_ps(offset, _mm_set1_ps(1.0)), offset)
+    _mm256_add_ps(
+        _mm256_permutevar8x32_ps(both_signs(x_and_y), first),
+        _mm256_permutevar8x32_ps(both_signs(z_and_y), second),
+    )
 }
 
 #[inline]

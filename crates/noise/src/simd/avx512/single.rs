@@ -7,28 +7,15 @@ use crate::basis::Tables;
 use crate::basis::corners::Curve;
 use crate::number::{Integer, Real};
 use crate::simd::avx2::F32x8;
-use crate::simd::avx2::corners;
-use crate::simd::avx2::single::{add_lanes, blend, parts};
+use crate::simd::avx2::single::{add_lanes, noise, position};
 use crate::simd::{LaneTerms, Vector};
 
-/// The noise at a point. Each corner picks two of the sixteen numbers that there are, and adds them.
+/// The noise at a point: as with AVX2, but that the cell is found at once.
 #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
 pub(in crate::simd) fn improved(tables: &Tables, x: f32, y: f32, z: f32) -> f32 {
-    let tables = &tables.corners;
-    let position = _mm_setr_ps(z, y, x, 0.0);
-    // (Not by way of the floor, on which the offset waits: everything else waits for the cell.)
-    let cell = _mm512_castsi512_si128(cell(F32x16(_mm512_castps128_ps512(position))));
-    let (column, z) = corners::column(cell);
-    // SAFETY: the column is that of a cell.
-    let codes: u64 = unsafe { corners::hash(tables, &tables.parts, column, z) };
-    let offset = _mm_sub_ps(position, _mm_floor_ps(position));
-    // None of them is −0, so that the noise is not.
-    let parts = parts(offset);
-    let negative = _mm256_sub_ps(_mm256_setzero_ps(), parts);
-    let first = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(codes as i64));
-    let second = _mm256_srli_epi32::<4>(first);
-    let pick = |which| _mm256_permutex2var_ps(parts, which, negative);
-    blend(_mm256_add_ps(pick(first), pick(second)), offset)
+    let position = position(x, y, z);
+    let cell = cell(F32x16(_mm512_castps128_ps512(position)));
+    noise(&tables.corners, position, _mm512_castsi512_si128(cell))
 }
 
 /// The sum at a point, with up to eight octaves in the lanes: in the lower eight lanes at the corners below the point, in the
