@@ -243,13 +243,16 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
                 None => (terms.frequencies[0], end),
             };
             let hashed_by_then = if index == last && end == steps { end - H::LEAD } else { end };
-            for i in start..hashed_by_then {
+            for i in start..end - H::LEAD {
                 if index == 0 {
                     prefetch([x, y, z], i + AHEAD / STEP);
                 }
-                let later = i + H::LEAD;
-                let later = if later < end { (octave.frequency, later) } else { (frequency, later - end + after) };
-                let later = (later.0, point(later.1));
+                let later = (octave.frequency, point(i + H::LEAD));
+                halves.step::<USE, N>(&octave, point(i), sums(outputs, i), &mut codes, step, later);
+                step += 1;
+            }
+            for i in end - H::LEAD..hashed_by_then {
+                let later = (frequency, point(i + H::LEAD - end + after));
                 halves.step::<USE, N>(&octave, point(i), sums(outputs, i), &mut codes, step, later);
                 step += 1;
             }
