@@ -25,9 +25,9 @@ fn main() {
         let arguments = if depth > 0 { vec![("depth", jaspe_texture::declare::Value::Int(depth))] } else { Vec::new() };
         let Ok(texture) = Texture::build(declaration.name, &arguments) else { continue };
         let texture = texture.in_figure_space();
-        // Two rows of a picture of a sphere.
-        let x: Vec<f32> = (0..MOST).map(|i| (i % 512) as f32 / 512.0 - 0.5).collect();
-        let y: Vec<f32> = (0..MOST).map(|i| 0.3 + 0.004 * (i / 512) as f32 + (i % 7) as f32 * 5e-4).collect();
+        // Sixteen samples of each pixel in rows of a picture of a sphere.
+        let x: Vec<f32> = (0..MOST).map(|i| (i / 16 % 64) as f32 / 64.0 - 0.5 + (i * 7 % 16) as f32 / 1024.0).collect();
+        let y: Vec<f32> = (0..MOST).map(|i| 0.3 + (i / 1024) as f32 / 64.0 + (i * 11 % 16) as f32 / 1024.0).collect();
         let z: Vec<f32> = x.iter().zip(&y).map(|(x, y)| (1.0 - x * x - y * y).sqrt()).collect();
         let mut coefficients = vec![0.0; MOST];
         print!("{:8} {:6}", declaration.name, texture.sum().octaves());
