@@ -268,3 +268,23 @@ fn points_that_lie_one_after_the_other_have_the_same_values() {
         }
     }
 }
+
+/// Slices that do not fit the caches go another way.
+#[test]
+fn a_million_points_have_the_same_bits() {
+    let count = (1 << 20) + 1234;
+    let [x, y, z] = [1, 2, 3].map(|salt| coordinates(count, salt));
+    for combine in [Combine::Plain, Combine::Absolute] {
+        let sum = Sum::new(Noise::new(Basis::Improved, 0), combine, 2);
+        for level in Level::ALL {
+            let mut values = [vec![0.0; count], vec![0.0; count]];
+            let [whole, pieces] = &mut values;
+            sum.fill_at(level, [&x, &y, &z], whole);
+            for (piece, start) in pieces.chunks_mut(1000).zip((0..).step_by(1000)) {
+                let at = start..start + piece.len();
+                sum.fill_at(level, [&x[at.clone()], &y[at.clone()], &z[at]], piece);
+            }
+            assert!(whole.iter().zip(pieces.iter()).all(|(a, b)| same(*a, *b)), "{combine:?} at {level:?}");
+        }
+    }
+}

@@ -8,7 +8,8 @@ use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 use crate::basis::corners::Corners;
 use crate::basis::improved::blend_codes;
 use crate::number::Dual;
-use crate::simd::{Terms, Vector};
+use crate::simd::avx2::F32x8;
+use crate::simd::{self, Terms, Vector};
 
 /// The coordinates of a step along each axis.
 pub(super) type Point<'a, const STEP: usize> = [&'a [f32; STEP]; 3];
@@ -196,24 +197,80 @@ impl<const STEP: usize> Room<STEP> {
     }
 }
 
-/// The sum of octaves.
+/// The sum of octaves, block by block.
 #[inline(always)]
 fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
     halves: &H,
     terms: &Terms,
+    points: [&[[f32; STEP]]; 3],
+    outputs: &mut [&mut [f32]; N],
+) {
+    let steps = outputs[0].len() / STEP;
+    let mut copy =
+        if steps * STEP < FAR { None } else { Some(Block { points: [[0.0; BLOCK]; 3], sums: [[0.0; BLOCK]; N] }) };
+    for start in (0..steps).step_by(BLOCK / STEP) {
+        let end = steps.min(start + BLOCK / STEP);
+        let count = (end - start) * STEP;
+        let mut block = points;
+        let mut sums: [&mut [f32]; N];
+        match &mut copy {
+            None => {
+                for (block, points) in block.iter_mut().zip(points) {
+                    *block = &points[start..end];
+                }
+                sums = outputs.each_mut().map(|output| &mut output[start * STEP..end * STEP]);
+            }
+            Some(copy) => {
+                for (axis, points) in points.iter().enumerate() {
+                    copy.points[axis][..count].copy_from_slice(points[start..end].as_flattened());
+                }
+                for (block, points) in block.iter_mut().zip(&copy.points) {
+                    *block = points[..count].as_chunks().0;
+                }
+                sums = copy.sums.each_mut().map(|sums| &mut sums[..count]);
+            }
+        }
+        octaves_of_block::<USE, H, STEP, N>(halves, terms, block, &mut sums, (points, start + BLOCK / STEP));
+        if let Some(copy) = &copy {
+            for (output, sums) in outputs.iter_mut().zip(&copy.sums) {
+                simd::copy_away::<F32x8, 8>(&sums[..count], &mut output[start * STEP..end * STEP]);
+            }
+        }
+    }
+    if copy.is_some() {
+        <F32x8 as Vector<8>>::after_stores_away();
+    }
+}
+
+/// From so many points on, the slices come from memory and go there. They are copied block by block, since large slices often begin
+/// at the same place of a page, and their lines would drive each other out of the first cache.
+const FAR: usize = 1 << 20;
+
+/// The copy of a block.
+#[repr(align(64))]
+struct Block<const N: usize> {
+    points: [[f32; BLOCK]; 3],
+    sums: [[f32; BLOCK]; N],
+}
+
+/// The sum of octaves at the points of a block, while the next ones are called for, which are those from a step of some slices on.
+#[inline(always)]
+fn octaves_of_block<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
+    halves: &H,
+    terms: &Terms,
     [x, y, z]: [&[[f32; STEP]]; 3],
     outputs: &mut [&mut [f32]; N],
+    (ahead, first): ([&[[f32; STEP]]; 3], usize),
 ) {
     let steps = outputs[0].len() / STEP;
     assert!(x.len() == steps && y.len() == steps && z.len() == steps);
     let point = |i: usize| [&x[i], &y[i], &z[i]];
-    let Some(last) = terms.octaves().checked_sub(1) else {
-        outputs.iter_mut().for_each(|output| output[..steps * STEP].fill(0.0));
-        return;
-    };
+    for output in outputs.iter_mut() {
+        output.fill(0.0);
+    }
+    let Some(last) = terms.octaves().checked_sub(1) else { return };
     let mut codes = halves.room();
     if steps < H::LEAD {
-        outputs.iter_mut().for_each(|output| output[..steps * STEP].fill(0.0));
         for index in 0..terms.octaves() {
             for i in 0..steps {
                 halves.hash::<N>(terms.frequencies[index], point(i), &mut codes, i);
@@ -228,41 +285,30 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
     for i in 0..H::LEAD {
         halves.hash::<N>(terms.frequencies[0], point(i), &mut codes, i);
     }
-    let (mut start, mut step) = (0, 0);
-    while start < steps {
-        // (None is so short that the hashes would be ahead of the next one.)
-        let end = if steps - start < BLOCK / STEP + H::LEAD { steps } else { start + BLOCK / STEP };
-        for output in outputs.iter_mut() {
-            output[start * STEP..end * STEP].fill(0.0);
-        }
-        for index in 0..terms.octaves() {
-            let octave = Octave::of(terms, index);
-            // After the block comes its next octave, or the next block.
-            let (frequency, after) = match terms.frequencies.get(index + 1) {
-                Some(&frequency) => (frequency, start),
-                None => (terms.frequencies[0], end),
-            };
-            let hashed_by_then = if index == last && end == steps { end - H::LEAD } else { end };
-            for i in start..end - H::LEAD {
-                if index == 0 {
-                    prefetch([x, y, z], i + AHEAD / STEP);
-                }
-                let later = (octave.frequency, point(i + H::LEAD));
-                halves.step::<USE, N>(&octave, point(i), sums(outputs, i), &mut codes, step, later);
-                step += 1;
+    let (hashed_by_then, mut step) = (steps - H::LEAD, 0);
+    for index in 0..=last {
+        let octave = Octave::of(terms, index);
+        for i in 0..hashed_by_then {
+            if index == 0 {
+                prefetch(ahead, first + i);
             }
-            for i in end - H::LEAD..hashed_by_then {
-                let later = (frequency, point(i + H::LEAD - end + after));
-                halves.step::<USE, N>(&octave, point(i), sums(outputs, i), &mut codes, step, later);
-                step += 1;
-            }
+            let later = (octave.frequency, point(i + H::LEAD));
+            halves.step::<USE, N>(&octave, point(i), sums(outputs, i), &mut codes, step, later);
+            step += 1;
         }
-        start = end;
+        if index == last {
+            break;
+        }
+        for i in hashed_by_then..steps {
+            let later = (terms.frequencies[index + 1], point(i - hashed_by_then));
+            halves.step::<USE, N>(&octave, point(i), sums(outputs, i), &mut codes, step, later);
+            step += 1;
+        }
     }
     halves.complete::<N>(&mut codes, step + H::LEAD);
     for i in 0..H::LEAD {
-        let point = point(steps - H::LEAD + i);
-        let sums = sums(outputs, steps - H::LEAD + i);
+        let (point, sums) = (point(hashed_by_then + i), sums(outputs, hashed_by_then + i));
+        prefetch(ahead, first + hashed_by_then + i);
         halves.finish::<USE, N>(&Octave::of(terms, last), point, sums, &codes, step + i);
     }
 }
