@@ -50,3 +50,20 @@ pub(crate) fn deal<I: Send, T: Send>(
     let hands = (0..rayon::current_num_threads()).into_par_iter().with_max_len(1);
     hands.map(|_| work(&mut std::iter::from_fn(next))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_item_is_dealt_once_and_in_order() {
+        for threads in [1, 2, 5] {
+            let hands = run(Some(threads), || deal(0..1000, |items| items.collect::<Vec<u32>>()));
+            assert_eq!(hands.len(), threads);
+            assert!(hands.iter().all(|hand| hand.is_sorted()));
+            let mut all = hands.concat();
+            all.sort_unstable();
+            assert!(all.into_iter().eq(0..1000));
+        }
+    }
+}

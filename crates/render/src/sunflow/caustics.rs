@@ -124,19 +124,7 @@ impl Crowds {
                 crowds.near[cell] = (crowds.near[cell] + 1).min(LEAST as u8);
             }
         }
-        // To every cell its neighbours are added along its row, across the rows of its layer, and from layer to layer.
-        let (row, layer) = (size[0], size[0] * size[1]);
-        crowds.near.par_chunks_mut(layer).for_each(|near| {
-            let mut before = near.to_vec();
-            near.chunks_mut(row).zip(before.chunks(row)).for_each(|(near, before)| widen(near, before, 1));
-            before.copy_from_slice(near);
-            widen(near, &before, row);
-        });
-        let before = crowds.near.clone();
-        crowds.near.par_chunks_mut(layer).enumerate().for_each(|(z, near)| {
-            let others = [z.checked_sub(1), Some(z + 1)].into_iter().flatten();
-            others.filter_map(|z| before.chunks(layer).nth(z)).for_each(|other| add(near, other));
-        });
+        add_neighbours(&mut crowds.near, size);
         crowds
     }
 
@@ -152,6 +140,22 @@ impl Crowds {
     fn is_near(&self, point: Vec3) -> bool {
         self.cell(point).is_some_and(|cell| usize::from(self.near[cell]) >= LEAST)
     }
+}
+
+/// Adds to every cell's count those of the cells around it: along its row, across the rows of its layer, and from layer to layer.
+fn add_neighbours(near: &mut [u8], [columns, rows, _]: [usize; 3]) {
+    let layer = columns * rows;
+    near.par_chunks_mut(layer).for_each(|near| {
+        let mut before = near.to_vec();
+        near.chunks_mut(columns).zip(before.chunks(columns)).for_each(|(near, before)| widen(near, before, 1));
+        before.copy_from_slice(near);
+        widen(near, &before, columns);
+    });
+    let before = near.to_vec();
+    near.par_chunks_mut(layer).enumerate().for_each(|(z, near)| {
+        let others = [z.checked_sub(1), Some(z + 1)].into_iter().flatten();
+        others.filter_map(|z| before.chunks(layer).nth(z)).for_each(|other| add(near, other));
+    });
 }
 
 /// Adds to every cell of a row or layer those a step before and after it, as they were.
@@ -225,6 +229,29 @@ impl Nearest {
         }
         if found.len() == most {
             self.reach = found[0].0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_crowd_is_what_lies_in_a_cell_and_those_around_it() {
+        for size in [[7, 5, 4], [1, 1, 1], [1, 6, 2], [9, 1, 3], [4, 4, 1]] {
+            let [columns, rows, layers] = size;
+            let counts: Vec<u8> = (0..columns * rows * layers).map(|i| (i * i % 11 / 7) as u8).collect();
+            let mut near = counts.clone();
+            add_neighbours(&mut near, size);
+            let around = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+            for (i, &near) in near.iter().enumerate() {
+                let [x, y, z] = [i % columns, i / columns % rows, i / columns / rows];
+                let cells = around(z, layers).flat_map(|z| around(y, rows).map(move |y| (y, z)));
+                let row = |(y, z): (usize, usize)| around(x, columns).map(move |x| (z * rows + y) * columns + x);
+                let total: usize = cells.flat_map(row).map(|cell| usize::from(counts[cell])).sum();
+                assert_eq!(usize::from(near), total.min(LEAST), "{size:?}, {x} {y} {z}");
+            }
         }
     }
 }
