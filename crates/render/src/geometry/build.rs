@@ -189,8 +189,8 @@ impl Binning {
 
     /// Sorts items into those up to the last bin of the left side and the others; returns how many are on the left, and the
     /// boxes around the centres of both sides.
-    fn part(&self, items: &mut [Item], axis: usize, last: usize) -> (usize, [Extent; 2]) {
-        let component = |v: Vec4| v.to_array()[axis % 4];
+    fn part<const AXIS: usize>(&self, items: &mut [Item], last: usize) -> (usize, [Extent; 2]) {
+        let component = |v: Vec4| v.to_array()[AXIS];
         let (origin, scale, limit) = (component(self.origin), component(self.scale), (last + 1) as f32);
         let (mut left, mut right, mut middle) = (Extent::EMPTY, Extent::EMPTY, 0);
         for i in 0..items.len() {
@@ -201,7 +201,8 @@ impl Binning {
             // one from infinitely far: that takes no guess of the processor's.
             items.swap(i, middle);
             middle += usize::from(is_left);
-            let (off_left, off_right) = if is_left { (0.0, f32::INFINITY) } else { (f32::INFINITY, 0.0) };
+            let far = |far: bool| f32::from_bits(u32::from(far) * f32::INFINITY.to_bits());
+            let (off_left, off_right) = (far(!is_left), far(is_left));
             let center = item.center();
             left.min = left.min.min(center + off_left);
             left.max = left.max.max(center - off_left);
@@ -257,7 +258,11 @@ fn split(items: &mut [Item], cover: &Cover, depth: u32, bins: &mut Bins) -> (usi
         best = binning.cheapest(bins);
     }
     if let Some((axis, last)) = best {
-        let (middle, centers) = binning.part(items, axis, last);
+        let (middle, centers) = match axis {
+            0 => binning.part::<0>(items, last),
+            1 => binning.part::<1>(items, last),
+            _ => binning.part::<2>(items, last),
+        };
         if middle > 0 && middle < items.len() {
             let union = |bins: &[Bin]| bins.iter().fold(Extent::EMPTY, |all, bin| all.union(bin.0));
             let (left, right) = bins[axis][..binning.count].split_at(last + 1);

@@ -192,28 +192,60 @@ impl Node {
         Child(self.codes[slot & 7])
     }
 
+    /// A node without children: their boxes are inverted and never hit.
+    pub const EMPTY: Node = {
+        let (min, max) = ([f32::INFINITY; 8], [f32::NEG_INFINITY; 8]);
+        Node { sides: [min, max, min, max, min, max], codes: [Child::NONE.code(); 8], order: [0; 8] }
+    };
+
     /// A node with these children, at most eight.
     pub fn new(children: &[(Aabb, Child)]) -> Node {
-        // What is not there has an inverted box and is never hit.
-        let (min, max) = ([f32::INFINITY; 8], [f32::NEG_INFINITY; 8]);
-        let mut node = Node { sides: [min, max, min, max, min, max], codes: [Child::NONE.code(); 8], order: [0; 8] };
+        let mut node = Node::EMPTY;
+        let mut centers = [[0.0; 8]; 3];
         for (slot, &(bounds, child)) in children.iter().enumerate() {
+            let center = bounds.center();
             for axis in 0..3 {
                 node.sides[2 * axis][slot] = bounds.min[axis];
                 node.sides[2 * axis + 1][slot] = bounds.max[axis];
+                centers[axis][slot] = center[axis];
             }
             node.codes[slot] = child.code();
         }
         for octant in (0..8).map(Octant) {
-            let sign = Vec3::from_array([0, 1, 2].map(|axis| if octant.0 >> axis & 1 == 0 { 1.0 } else { -1.0 }));
-            let mut slots = [0, 1, 2, 3, 4, 5, 6, 7];
-            let distance =
-                |&slot: &usize| children.get(slot).map_or(f32::INFINITY, |(bounds, _)| bounds.center().dot(sign));
-            slots.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
-            for (order, slot) in node.order.iter_mut().zip(slots) {
-                *order |= (slot as u32) << octant.shift();
+            let distances = octant.distances(&centers, children.len());
+            for (slot, place) in places(distances).into_iter().enumerate() {
+                node.order[place as usize % 8] |= (slot as u32) << octant.shift();
             }
         }
         node
     }
+}
+
+impl Octant {
+    /// How far away eight points lie for its rays, of which the first `count` are there: integers in the order of
+    /// [`f32::total_cmp`], so that any distances can be sorted.
+    fn distances(self, [x, y, z]: &[[f32; 8]; 3], count: usize) -> [i32; 8] {
+        let [sx, sy, sz] = [0, 1, 2].map(|axis| if self.0 >> axis & 1 == 0 { 1.0f32 } else { -1.0 });
+        let mut distances = [0; 8];
+        for slot in 0..8 {
+            let distance = x[slot] * sx + y[slot] * sy + z[slot] * sz;
+            // What is not there is farther away than anything.
+            let distance = if slot < count { distance } else { f32::INFINITY };
+            let bits = distance.to_bits() as i32;
+            // Negative numbers have the order of their bits turned round.
+            distances[slot] = bits ^ (bits >> 31 & i32::MAX);
+        }
+        distances
+    }
+}
+
+/// The place of each of eight numbers when they are sorted from the greatest to the least, equals as they lie.
+fn places(numbers: [i32; 8]) -> [i32; 8] {
+    let mut places = [0; 8];
+    for (j, &other) in numbers.iter().enumerate() {
+        for (i, &number) in numbers.iter().enumerate() {
+            places[i] += i32::from(other > number) + i32::from(other == number && j < i);
+        }
+    }
+    places
 }

@@ -126,7 +126,7 @@ impl Collapse<'_> {
                 self.gather(a, left, &mut slots);
                 self.gather(b, 8 - left, &mut slots);
                 let place = self.nodes.len();
-                self.nodes.push(Node::new(&[]));
+                self.nodes.push(Node::EMPTY);
                 let bounds = |at: u32| self.binary[at as usize].bounds.aabb();
                 let mut children = Vec::with_capacity(8);
                 children.extend(slots.iter().map(|&at| (bounds(at), Child::NONE)));

@@ -3,7 +3,7 @@
 
 use glam::{DMat4, DVec3, Vec3};
 
-use super::bvh::{Child, Kind};
+use super::bvh::{Aabb, Child, Kind, Node, Octant};
 use super::kernel::{Plain, Shear, dominant, sphere, triangle, turned};
 use super::simd::{Lanes, Portable, Simd, Vec3s};
 use super::traverse::{Flight, Nested};
@@ -600,6 +600,34 @@ fn what_a_ray_meets_does_not_depend_on_the_others_of_its_batch() {
         for count in 1..80 {
             let batch = first..first + count;
             assert_eq!(trace(&all[batch.clone()]), expected[batch.clone()], "rays {batch:?}");
+        }
+    }
+}
+
+#[test]
+fn nodes_know_their_children_from_the_farthest_to_the_nearest() {
+    let mut random = Random(79);
+    for count in 0..=8 {
+        for scale in [1.0, 1e-30, 1e38] {
+            let children: Vec<(Aabb, Child)> = (0..count)
+                .map(|i| {
+                    // Some lie in the same place.
+                    let point = if i == 3 { Vec3::ZERO } else { (random.point() * 2.0).round() * 0.5 * scale };
+                    (Aabb::around([point]), Child::node(i))
+                })
+                .collect();
+            let node = Node::new(&children);
+            for octant in (0..8).map(Octant) {
+                let sign = Vec3::from_array([0, 1, 2].map(|axis| if octant.0 >> axis & 1 == 0 { 1.0 } else { -1.0 }));
+                let slots = node.order.map(|slots| (slots >> octant.shift() & 7) as usize);
+                let mut sorted = slots;
+                sorted.sort_unstable();
+                assert_eq!(sorted, [0, 1, 2, 3, 4, 5, 6, 7], "every slot has its place");
+                assert!(slots[..8 - count].iter().all(|&slot| slot >= count), "what is not there comes first");
+                let there = &slots[8 - count..];
+                let distance = |slot: usize| (children[slot].0.min * sign).dot(Vec3::ONE);
+                assert!(there.is_sorted_by(|&a, &b| distance(a) >= distance(b)), "{octant:?}: {there:?}");
+            }
         }
     }
 }
