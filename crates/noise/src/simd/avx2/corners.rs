@@ -16,10 +16,10 @@ pub(super) fn columns(x: __m256i, y: __m256i) -> __m256i {
     _mm256_add_epi32(_mm256_add_epi32(_mm256_slli_epi32::<8>(x), x), y)
 }
 
-/// The column of one cell, given as z, y, x, in the upper half, and in the lower half its z.
+/// The column of one cell, which is given along z, y, x, and its z.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub(in crate::simd) fn column(cell: __m128i) -> (u32, u8) {
+pub(super) fn column(cell: __m128i) -> (u32, u8) {
     let bytes = _mm_shuffle_epi8(cell, _mm_setr_epi8(0, -1, -1, -1, 4, -1, 8, -1, -1, -1, -1, -1, -1, -1, -1, -1));
     let products = _mm_madd_epi16(bytes, _mm_setr_epi16(1, 0, 1, CornerTables::ROW as i16, 0, 0, 0, 0));
     let mut halves = _mm_cvtsi128_si64(products) as u64;
@@ -31,9 +31,9 @@ pub(in crate::simd) fn column(cell: __m128i) -> (u32, u8) {
 /// Codes of a cell's corners, an eighth of the bits each: from the lowest on (0, 0, 0), (0, 0, 1), (0, 1, 0), … (1, 1, 1).
 ///
 /// # Safety
-/// The column is one that [`columns`] or [`column`] returned.
+/// The column is one that [`columns`] or `column` returned.
 #[inline(always)]
-pub(in crate::simd) unsafe fn hash<T: Copy + BitOr<Output = T>>(
+pub(super) unsafe fn hash<T: Copy + BitOr<Output = T>>(
     tables: &CornerTables,
     codes: &ColumnCodes<T>,
     column: u32,

@@ -1,6 +1,6 @@
 //! Eight lanes: AVX2 and FMA. Tables are read by gathers.
 
-pub(super) mod corners;
+mod corners;
 pub(super) mod improved;
 pub(super) mod single;
 
