@@ -1,7 +1,7 @@
-//! The order in which the kernels made by hand work: step by step, hashes one step ahead of blends.
+//! The order in which the kernels made by hand work: step by step, hashes some steps ahead of blends.
 //!
 //! Hashing reads tables, blending multiplies and adds. The two use other ports of the machine, so the points of a later
-//! step are hashed beside the blends of the current one, and neither waits for the other: across blocks and octaves too.
+//! step are hashed beside the blends of the current one, and neither waits for the other: across the octaves of a block too.
 
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
@@ -98,50 +98,11 @@ pub(super) fn sum<H: Halves<STEP>, const STEP: usize, const N: usize>(
         return 0;
     }
     match terms {
-        None => alone(halves, points, &mut outputs),
+        None => octaves_of_block::<ALONE, H, STEP, N>(halves, &ONE, points, &mut outputs, (points, AHEAD / STEP)),
         Some(terms) if terms.absolute => octaves::<ABSOLUTE, H, STEP, N>(halves, terms, points, &mut outputs),
         Some(terms) => octaves::<PLAIN, H, STEP, N>(halves, terms, points, &mut outputs),
     }
     steps * STEP
-}
-
-/// The noise itself.
-#[inline(always)]
-fn alone<H: Halves<STEP>, const STEP: usize, const N: usize>(
-    halves: &H,
-    [x, y, z]: [&[[f32; STEP]]; 3],
-    outputs: &mut [&mut [f32]; N],
-) {
-    let steps = outputs[0].len() / STEP;
-    assert!(x.len() == steps && y.len() == steps && z.len() == steps);
-    let octave = Octave { frequency: 1.0, amplitude: 1.0, slope: 1.0 };
-    let point = |i: usize| [&x[i], &y[i], &z[i]];
-    let mut codes = halves.room();
-    if steps < H::LEAD {
-        for i in 0..steps {
-            halves.hash::<N>(1.0, point(i), &mut codes, i);
-        }
-        halves.complete::<N>(&mut codes, steps);
-        for i in 0..steps {
-            halves.finish::<ALONE, N>(&octave, point(i), sums(outputs, i), &codes, i);
-        }
-        return;
-    }
-    // (Loops of constant length are unrolled, and a single step is no loop.)
-    for i in 0..H::LEAD {
-        halves.hash::<N>(1.0, point(i), &mut codes, i);
-    }
-    let hashed_by_then = steps - H::LEAD;
-    for i in 0..hashed_by_then {
-        prefetch([x, y, z], i + AHEAD / STEP);
-        let later = (1.0, point(i + H::LEAD));
-        halves.step::<ALONE, N>(&octave, point(i), sums(outputs, i), &mut codes, i, later);
-    }
-    halves.complete::<N>(&mut codes, steps);
-    for i in 0..H::LEAD {
-        let i = hashed_by_then + i;
-        halves.finish::<ALONE, N>(&octave, point(i), sums(outputs, i), &codes, i);
-    }
 }
 
 /// The noise itself at points that are not in columns yet, a multiple of `STEP` of them; returns how many. They are taken apart
@@ -184,6 +145,9 @@ pub(super) fn at_points<H: Halves<STEP>, const STEP: usize>(
 
 /// How many steps are taken apart at once.
 const ROOMS: usize = 4;
+
+/// The noise alone.
+const ONE: Terms = Terms { absolute: false, frequencies: &[1.0], amplitudes: &[1.0], slopes: &[1.0] };
 
 /// The coordinates of a step. (Aligned, or vectors may straddle cache lines.)
 #[repr(align(64))]
@@ -265,8 +229,8 @@ fn octaves_of_block<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: 
     let steps = outputs[0].len() / STEP;
     assert!(x.len() == steps && y.len() == steps && z.len() == steps);
     let point = |i: usize| [&x[i], &y[i], &z[i]];
-    for output in outputs.iter_mut() {
-        output.fill(0.0);
+    if USE != ALONE {
+        outputs.iter_mut().for_each(|output| output.fill(0.0));
     }
     let Some(last) = terms.octaves().checked_sub(1) else { return };
     let mut codes = halves.room();

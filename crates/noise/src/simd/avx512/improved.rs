@@ -26,32 +26,56 @@ pub(in crate::simd) fn sum<const N: usize>(
     outputs: [&mut [f32]; N],
 ) -> usize {
     let whole = outputs[0].len() / STEP * STEP;
-    pipeline::sum(&InRegisters(tables), terms, [&x[..whole], &y[..whole], &z[..whole]], outputs)
+    pipeline::sum(&InSpace(tables), terms, [&x[..whole], &y[..whole], &z[..whole]], outputs)
 }
 
 /// The noise at the first points, which are not in columns, a multiple of 64 of them; returns how many.
 #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
 pub(in crate::simd) fn at_points(tables: &Tables, points: &[[f32; 3]], values: &mut [f32]) -> usize {
-    pipeline::at_points(&InRegisters(tables), points, values)
+    pipeline::at_points(&InSpace(tables), points, values)
 }
 
-/// The kernel whose codes stay in registers. It exists only where the machine has the instructions.
-struct InRegisters<'a>(&'a Tables);
+/// A kernel whose codes stay in registers, one step ahead. It exists only where the machine has the instructions.
+pub(in crate::simd) trait InRegisters {
+    /// The codes of a step.
+    type Codes: Copy;
+    /// Room for them.
+    const EMPTY: Self::Codes;
+    /// Hashes the cells of the points, times the frequency.
+    fn codes<const USE: u8>(&self, frequency: f32, point: Point<STEP>) -> Self::Codes;
+    /// Adds one octave at 64 points, whose cells are hashed already.
+    fn add<const USE: u8, const N: usize>(
+        codes: &Self::Codes,
+        octave: &Octave,
+        point: Point<STEP>,
+        sums: Sums<STEP, N>,
+    );
+    /// [`InRegisters::add`] with nothing to do beside it while the hashes are on their way.
+    #[inline(always)]
+    fn add_last<const USE: u8, const N: usize>(
+        codes: &Self::Codes,
+        octave: &Octave,
+        point: Point<STEP>,
+        sums: Sums<STEP, N>,
+    ) {
+        Self::add::<USE, N>(codes, octave, point, sums);
+    }
+    /// As [`Halves::take_apart`].
+    fn take_apart(points: &[[f32; 3]; STEP], coordinates: &mut [[f32; STEP]; 3]);
+}
 
-impl Halves<STEP> for InRegisters<'_> {
-    /// (The registers hold the codes of one step.)
+impl<K: InRegisters> Halves<STEP> for K {
     const LEAD: usize = 1;
-    type Codes = [__m512i; 4];
+    type Codes = K::Codes;
 
     #[inline(always)]
     fn room(&self) -> Self::Codes {
-        // SAFETY, here and below: the machine has the instructions.
-        unsafe { [_mm512_setzero_si512(); 4] }
+        K::EMPTY
     }
 
     #[inline(always)]
     fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>, codes: &mut Self::Codes, _step: usize) {
-        *codes = unsafe { hash::<PLAIN>(self.0, frequency, point) };
+        *codes = self.codes::<PLAIN>(frequency, point);
     }
 
     #[inline(always)]
@@ -64,22 +88,13 @@ impl Halves<STEP> for InRegisters<'_> {
         _step: usize,
         (frequency, later): (f32, Point<STEP>),
     ) {
-        let later = unsafe { hash::<USE>(self.0, frequency, later) };
-        add_step::<USE, N>(codes, octave, point, sums);
+        let later = self.codes::<USE>(frequency, later);
+        K::add::<USE, N>(codes, octave, point, sums);
         *codes = later;
     }
 
     #[inline(always)]
     fn complete<const N: usize>(&self, _codes: &mut Self::Codes, _steps: usize) {}
-
-    #[inline(always)]
-    fn take_apart(points: &[[f32; 3]; STEP], [x, y, z]: &mut [[f32; STEP]; 3]) {
-        let numbers = points.as_flattened().as_chunks().0.as_chunks().0;
-        let (x, y, z) = (x.as_chunks_mut().0, y.as_chunks_mut().0, z.as_chunks_mut().0);
-        for group in 0..STEP / 16 {
-            triples::sixteen(&numbers[group], [&mut x[group], &mut y[group], &mut z[group]]);
-        }
-    }
 
     #[inline(always)]
     fn finish<const USE: u8, const N: usize>(
@@ -90,10 +105,59 @@ impl Halves<STEP> for InRegisters<'_> {
         codes: &Self::Codes,
         _step: usize,
     ) {
+        K::add_last::<USE, N>(codes, octave, point, sums);
+    }
+
+    #[inline(always)]
+    fn take_apart(points: &[[f32; 3]; STEP], coordinates: &mut [[f32; STEP]; 3]) {
+        K::take_apart(points, coordinates);
+    }
+}
+
+/// The kernel in space.
+struct InSpace<'a>(&'a Tables);
+
+impl InRegisters for InSpace<'_> {
+    type Codes = [__m512i; 4];
+    // SAFETY: these are numbers.
+    const EMPTY: Self::Codes = unsafe { std::mem::zeroed() };
+
+    #[inline(always)]
+    fn codes<const USE: u8>(&self, frequency: f32, point: Point<STEP>) -> Self::Codes {
+        // SAFETY: the machine has the instructions.
+        unsafe { hash::<USE>(self.0, frequency, point) }
+    }
+
+    #[inline(always)]
+    fn add<const USE: u8, const N: usize>(
+        codes: &Self::Codes,
+        octave: &Octave,
+        point: Point<STEP>,
+        sums: Sums<STEP, N>,
+    ) {
+        add_step::<USE, N>(codes, octave, point, sums);
+    }
+
+    #[inline(always)]
+    fn add_last<const USE: u8, const N: usize>(
+        codes: &Self::Codes,
+        octave: &Octave,
+        point: Point<STEP>,
+        sums: Sums<STEP, N>,
+    ) {
         if N == 4 {
             return add_step::<USE, N>(codes, octave, point, sums);
         }
         finish::<USE, N>(codes, octave, point, sums);
+    }
+
+    #[inline(always)]
+    fn take_apart(points: &[[f32; 3]; STEP], [x, y, z]: &mut [[f32; STEP]; 3]) {
+        let numbers = points.as_flattened().as_chunks().0.as_chunks().0;
+        let (x, y, z) = (x.as_chunks_mut().0, y.as_chunks_mut().0, z.as_chunks_mut().0);
+        for group in 0..STEP / 16 {
+            triples::sixteen(&numbers[group], [&mut x[group], &mut y[group], &mut z[group]]);
+        }
     }
 }
 

@@ -3,13 +3,13 @@
 
 use std::arch::x86_64::*;
 
-use super::improved::{STEP, cells, load_table, lookup, offset};
+use super::improved::{InRegisters, STEP, cells, load_table, lookup, offset};
 use super::{F32x16, I32x16};
 use crate::basis::Tables;
 use crate::basis::improved::blend_codes;
 use crate::number::{Dual, Integer, Real};
 use crate::simd::Terms;
-use crate::simd::pipeline::{self, Halves, Octave, PLAIN, Point, Sums};
+use crate::simd::pipeline::{self, Octave, Point, Sums};
 
 /// The sums at the first points (without terms: the noise itself), a multiple of 64 of them; returns how many.
 #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
@@ -22,48 +22,24 @@ pub(in crate::simd) fn sum(tables: &Tables, terms: Option<&Terms>, [x, y]: [&[f3
 /// The kernel. It exists only where the machine has the instructions.
 struct InPlane<'a>(&'a Tables);
 
-impl Halves<STEP> for InPlane<'_> {
-    const LEAD: usize = 1;
+impl InRegisters for InPlane<'_> {
     /// Of the columns at the lower and at the upper end along x: see [`Tables::plane`].
     type Codes = [__m512i; 2];
+    // SAFETY: these are numbers.
+    const EMPTY: Self::Codes = unsafe { std::mem::zeroed() };
 
     #[inline(always)]
-    fn room(&self) -> Self::Codes {
-        // SAFETY, here and below: the machine has the instructions.
-        unsafe { [_mm512_setzero_si512(); 2] }
+    fn codes<const USE: u8>(&self, frequency: f32, point: Point<STEP>) -> Self::Codes {
+        // SAFETY: the machine has the instructions.
+        unsafe { hash::<USE>(self.0, frequency, point) }
     }
 
     #[inline(always)]
-    fn hash<const N: usize>(&self, frequency: f32, point: Point<STEP>, codes: &mut Self::Codes, _step: usize) {
-        *codes = unsafe { hash::<PLAIN>(self.0, frequency, point) };
-    }
-
-    #[inline(always)]
-    fn complete<const N: usize>(&self, _codes: &mut Self::Codes, _steps: usize) {}
-
-    #[inline(always)]
-    fn step<const USE: u8, const N: usize>(
-        &self,
-        octave: &Octave,
-        point: Point<STEP>,
-        sums: Sums<STEP, N>,
-        codes: &mut Self::Codes,
-        step: usize,
-        (frequency, later): (f32, Point<STEP>),
-    ) {
-        let later = unsafe { hash::<USE>(self.0, frequency, later) };
-        self.finish::<USE, N>(octave, point, sums, codes, step);
-        *codes = later;
-    }
-
-    #[inline(always)]
-    fn finish<const USE: u8, const N: usize>(
-        &self,
+    fn add<const USE: u8, const N: usize>(
+        codes: &Self::Codes,
         octave: &Octave,
         point: Point<STEP>,
         mut sums: Sums<STEP, N>,
-        codes: &Self::Codes,
-        _step: usize,
     ) {
         // (Written out, so that the shifts are by constants.)
         add_vector::<0, USE, N>(codes, octave, point, &mut sums);
