@@ -12,7 +12,7 @@ use super::rays::{Group, RayView, group, group_bits};
 use super::simd::{Kernel, Lanes, Simd, Vec3s};
 use super::stream::Outcome;
 use super::traverse::{SphereBlock, Tree};
-use super::{Hit, Id, PlaneShape};
+use super::{Id, PlaneShape};
 
 /// Rays of a group: two rows of a tile with four samples each.
 const GROUP: usize = 256;
@@ -70,10 +70,8 @@ impl<O: Outcome> Kernel for Meet<'_, O> {
         let Meet { few, rays, mut outcome } = self;
         for first in (0..rays.len()).step_by(GROUP) {
             let (end, slots) = few.look::<S>(rays, first);
-            if O::ANY && slots == 0 && few.planes.is_empty() {
-                for (ray, &t_max) in (first..end).zip(&rays.t_max[first..end]) {
-                    outcome.take(ray, &Hit::NONE, t_max < 0.0 || t_max.is_nan());
-                }
+            if slots == 0 && few.planes.is_empty() {
+                outcome.pass(first..end, rays.t_max);
                 continue;
             }
             for start in (first..end).step_by(S::Wide::COUNT) {
