@@ -7,7 +7,7 @@ use crate::basis::cellular::{Cellular, Feature, Metric};
 use crate::basis::{Basis, Period, Tables, cellular, classic, improved, lattice, simplex, value, white};
 use crate::dispatch::{Evaluate, OverSlices, over_slices};
 use crate::number::{Dual, Real};
-use crate::simd::{self, AtPoint, FEW, Level, Terms};
+use crate::simd::{self, FEW, InSpace, Level, Terms};
 
 /// A noise: points in, numbers out. Cheap to clone; immutable.
 #[derive(Debug, Clone)]
@@ -19,8 +19,7 @@ pub struct Noise {
     tables: Arc<Tables>,
     /// Whether this is the noise that the kernels made by hand are for.
     has_kernel: bool,
-    /// The one for single points, if the level in use has it.
-    at_point: Option<AtPoint>,
+    in_space: InSpace<Noise>,
 }
 
 /// Why [`Noise::with_period`] refused.
@@ -57,7 +56,7 @@ impl Noise {
             cellular: Cellular::default(),
             tables: Arc::new(Tables::new(seed)),
             has_kernel: false,
-            at_point: None,
+            in_space: InSpace::by(Noise::value_in_space),
         };
         noise.with_kernels()
     }
@@ -65,7 +64,8 @@ impl Noise {
     /// With the kernels for its basis and period.
     fn with_kernels(mut self) -> Self {
         self.has_kernel = self.basis == Basis::Improved && self.period == [0.0; 4];
-        self.at_point = if self.has_kernel { AtPoint::new(simd::level()) } else { None };
+        let kernel = if self.has_kernel { InSpace::improved(simd::level()) } else { None };
+        self.in_space = kernel.unwrap_or(InSpace::by(Noise::value_in_space));
         self
     }
 
@@ -127,7 +127,13 @@ impl Noise {
         &self.period
     }
 
+    /// Whether this is the noise that the kernels made by hand are for.
+    pub(crate) fn has_kernel(&self) -> bool {
+        self.has_kernel
+    }
+
     /// What follows from the seed.
+    #[inline(always)]
     pub(crate) fn tables(&self) -> &Tables {
         &self.tables
     }
@@ -219,10 +225,15 @@ impl Noise {
     /// The value at one point in single precision, with the machine's vector instructions.
     #[inline]
     pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
-        match self.at_point {
-            Some(kernel) if D == 3 => kernel.noise(&self.tables, [point[0], point[1], point[D - 1]]),
+        match point[..] {
+            [x, y, z] => self.in_space.at(self, [x, y, z]),
             _ => self.value_at(&point),
         }
+    }
+
+    /// The value at one point in space in single precision, by the generic evaluation.
+    fn value_in_space(&self, x: f32, y: f32, z: f32) -> f32 {
+        self.value([x, y, z])
     }
 
     /// The value at one point in single precision, by the generic evaluation.
@@ -263,12 +274,6 @@ impl Noise {
             }
             _ => self.sum_fast(level, None, points, outputs),
         }
-    }
-
-    /// The kernel made by hand for single points in space, if the level in use has one for this noise.
-    #[inline(always)]
-    pub(crate) fn at_point(&self) -> Option<AtPoint> {
-        self.at_point
     }
 
     /// The sum at one point with its octaves in the lanes of vectors, if there are several (and no period, which would

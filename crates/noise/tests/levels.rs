@@ -218,6 +218,17 @@ fn single_points_have_the_bits_of_batches() {
 }
 
 #[test]
+fn single_points_have_the_bits_of_batches_at_every_level() {
+    for level in Level::ALL {
+        let mut test = std::process::Command::new(std::env::current_exe().unwrap());
+        test.args(["--exact", "single_points_have_the_bits_of_batches"]).env("JASPE_SIMD", level.name());
+        let output = test.output().unwrap();
+        assert!(output.status.success(), "{level:?}: {}", String::from_utf8_lossy(&output.stdout));
+        assert!(String::from_utf8_lossy(&output.stdout).contains("1 passed"), "the test is there");
+    }
+}
+
+#[test]
 fn levels_have_names_and_stay_within_the_machines() {
     for level in Level::ALL {
         assert_eq!(Level::from_name(level.name()), Some(level));

@@ -18,7 +18,9 @@ mod triples;
 use std::sync::OnceLock;
 
 use crate::basis::Tables;
+use crate::noise::Noise;
 use crate::number::{Integer, Real};
+use crate::sum::Sum;
 
 pub use triples::{deinterleave, deinterleave_at};
 
@@ -176,32 +178,35 @@ pub(crate) struct Terms<'a> {
     pub slopes: &'a [f32],
 }
 
-/// A sum over octaves, for the kernels that have them in lanes.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct LaneTerms {
-    /// Whether each octave adds its absolute value.
-    pub absolute: bool,
-    /// How many octaves.
-    pub octaves: usize,
-    /// Eight at a time.
-    pub lanes: Vec<Lanes>,
-}
-
-impl LaneTerms {
-    /// Of these frequencies and amplitudes.
-    pub fn new(absolute: bool, frequencies: &[f32], amplitudes: &[f32]) -> LaneTerms {
-        let eight = |numbers: &[f32]| std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0));
-        let lanes = frequencies.chunks(8).zip(amplitudes.chunks(8));
-        let lanes = lanes.map(|(f, a)| Lanes { frequencies: eight(f), amplitudes: eight(a) }).collect();
-        LaneTerms { absolute, octaves: frequencies.len(), lanes }
-    }
-}
-
-/// Eight octaves, or fewer with zeros after them.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Up to eight octaves of a sum, for the kernels that have them in lanes.
+#[derive(Debug, Clone, PartialEq)]
+#[repr(align(64))]
 pub(crate) struct Lanes {
+    /// The bits of each octave's noise that count: all, or all but the sign.
+    pub mask: [u32; 8],
+    /// Zeros after the last octave, here and below.
     pub frequencies: [f32; 8],
     pub amplitudes: [f32; 8],
+    /// Two octaves at a time, each number four times.
+    pub frequencies_of_pairs: [[f32; 8]; 4],
+    pub amplitudes_of_pairs: [[f32; 8]; 4],
+    /// How many octaves.
+    pub count: usize,
+}
+
+impl Lanes {
+    /// All octaves of a sum, eight at a time.
+    pub fn of(absolute: bool, frequencies: &[f32], amplitudes: &[f32]) -> Vec<Lanes> {
+        let mask = [if absolute { u32::MAX >> 1 } else { u32::MAX }; 8];
+        let eight = |numbers: &[f32]| std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0));
+        let pairs = |numbers: [f32; 8]| std::array::from_fn(|pair| std::array::from_fn(|i| numbers[2 * pair + i / 4]));
+        let lanes = frequencies.chunks(8).zip(amplitudes.chunks(8)).map(|(some, amplitudes)| {
+            let (count, frequencies, amplitudes) = (some.len(), eight(some), eight(amplitudes));
+            let (frequencies_of_pairs, amplitudes_of_pairs) = (pairs(frequencies), pairs(amplitudes));
+            Lanes { mask, frequencies, amplitudes, frequencies_of_pairs, amplitudes_of_pairs, count }
+        });
+        lanes.collect()
+    }
 }
 
 impl Terms<'_> {
@@ -270,50 +275,79 @@ pub(crate) fn improved_at_points(level: Level, tables: &Tables, points: &[[f32; 
     }
 }
 
-/// Improved noise at one point, by the instructions of a level: the same bits as the generic evaluation.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct AtPoint {
-    /// The noise, with its corners in the lanes.
-    noise: unsafe fn(&Tables, f32, f32, f32) -> f32,
-    /// The sum of its octaves, with those in the lanes.
-    sum: unsafe fn(&Tables, &LaneTerms, f32, f32, f32) -> f32,
+/// A function of a point in space, chosen when the noise or sum is made: the fastest way for one point.
+#[derive(Debug)]
+pub(crate) struct InSpace<T>(unsafe fn(&T, f32, f32, f32) -> f32);
+
+impl<T> Clone for InSpace<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
 }
 
-impl AtPoint {
-    /// With the instructions of a level, at most those of the machine, if there are kernels for them.
-    pub fn new(level: Level) -> Option<AtPoint> {
+impl<T> Copy for InSpace<T> {}
+
+/// It follows from the noise or sum.
+impl<T> PartialEq for InSpace<T> {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl<T> InSpace<T> {
+    /// By any function.
+    pub fn by(function: fn(&T, f32, f32, f32) -> f32) -> Self {
+        InSpace(function)
+    }
+
+    /// Its value.
+    #[inline(always)]
+    pub fn at(self, of: &T, [x, y, z]: [f32; 3]) -> f32 {
+        // SAFETY: it is a function by itself, or the machine has the instructions that it needs.
+        unsafe { (self.0)(of, alone(x), alone(y), alone(z)) }
+    }
+}
+
+impl InSpace<Noise> {
+    /// Improved noise without a period, with the instructions of a level, at most those of the machine, if there is a kernel for them.
+    pub fn improved(level: Level) -> Option<Self> {
         match level.min(machine_level()) {
             #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => Some(AtPoint { noise: avx2::single::improved, sum: avx2::single::sum }),
+            Level::Avx2 => Some(InSpace(avx2::single::improved)),
             #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => Some(AtPoint { noise: avx512::single::improved, sum: avx512::single::sum }),
+            Level::Avx512 => Some(InSpace(avx512::single::improved)),
             _ => None,
         }
     }
+}
 
-    /// The noise.
-    #[inline(always)]
-    pub fn noise(self, tables: &Tables, point: [f32; 3]) -> f32 {
-        let [x, y, z] = one_by_one(point);
-        // SAFETY, here and below: the machine has the instructions, or there would be no such kernel.
-        unsafe { (self.noise)(tables, x, y, z) }
-    }
-
-    /// The sum.
-    #[inline(always)]
-    pub fn sum(self, tables: &Tables, terms: &LaneTerms, point: [f32; 3]) -> f32 {
-        let [x, y, z] = one_by_one(point);
-        unsafe { (self.sum)(tables, terms, x, y, z) }
+impl InSpace<Sum> {
+    /// Its octaves, added or their absolute values added: as [`InSpace::improved`].
+    pub fn improved_octaves(level: Level) -> Option<Self> {
+        match level.min(machine_level()) {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => Some(InSpace(avx2::single::sum)),
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => Some(InSpace(avx512::single::sum)),
+            _ => None,
+        }
     }
 }
 
-/// The coordinates, each read by itself. The compiler would read two of them as one number, for which the machine waits if
+/// The coordinate, in a register of its own. The compiler would read two of them as one number, for which the machine waits if
 /// they were written one by one just before: twenty nanoseconds.
 #[inline(always)]
-fn one_by_one(point: [f32; 3]) -> [f32; 3] {
-    // SAFETY: references may be read through.
-    let read = |coordinate: &f32| unsafe { std::ptr::read_volatile(coordinate) };
-    [read(&point[0]), read(&point[1]), read(&point[2])]
+fn alone(coordinate: f32) -> f32 {
+    #[cfg(target_arch = "x86_64")]
+    let coordinate = {
+        let mut coordinate = coordinate;
+        // SAFETY: this is no instruction.
+        unsafe {
+            std::arch::asm!("/* {0} */", inout(xmm_reg) coordinate, options(pure, nomem, nostack, preserves_flags))
+        };
+        coordinate
+    };
+    coordinate
 }
 
 /// Work on slices that the compiler makes vectors of.

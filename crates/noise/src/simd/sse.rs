@@ -43,6 +43,20 @@ impl Neg for F32x4 {
 
 impl Mask for M32x4 {}
 
+impl F32x4 {
+    /// From the machine's register.
+    #[inline(always)]
+    pub fn from_register(register: __m128) -> Self {
+        F32x4(register)
+    }
+
+    /// The machine's register.
+    #[inline(always)]
+    pub fn register(self) -> __m128 {
+        self.0
+    }
+}
+
 impl I32x4 {
     #[inline(always)]
     fn from_lanes(lanes: [i32; 4]) -> Self {

@@ -15,7 +15,7 @@ pub(crate) use combine::Partial;
 use crate::filter::{self, Fade};
 use crate::noise::Noise;
 use crate::number::{Dual, Real};
-use crate::simd::{self, FEW, LaneTerms, Level, MOST_STEP, Terms};
+use crate::simd::{self, FEW, InSpace, Lanes, Level, MOST_STEP, Terms};
 
 /// A sum over K octaves of a noise: Σ gᵏ n(lᵏ p) for k from 0 to K − 1, with the lacunarity l and the gain g; or the same
 /// with another term for n: see [`Combine`].
@@ -33,6 +33,7 @@ pub struct Sum {
     lacunarity: f64,
     gain: f64,
     scales: Arc<Scales>,
+    in_space: InSpace<Sum>,
 }
 
 /// What follows from octaves, lacunarity and gain, octave by octave.
@@ -42,7 +43,7 @@ struct Scales {
     amplitudes: Vec<f64>,
     /// The same in single precision, and the products of both.
     singles: [Vec<f32>; 3],
-    lanes: LaneTerms,
+    lanes: Vec<Lanes>,
 }
 
 /// More would reach past every number's range.
@@ -67,7 +68,17 @@ impl Sum {
     pub fn new(noise: Noise, combine: Combine, octaves: u32) -> Self {
         let octaves = octaves.min(MOST_OCTAVES);
         let scales = Arc::new(Scales::default());
-        Sum { noise, combine, octaves, last: 1.0, lacunarity: 2.0, gain: 0.5, scales }.scaled()
+        let in_space = InSpace::by(Sum::sum_in_space);
+        let kernel =
+            if combine.is_plain() && noise.has_kernel() { InSpace::improved_octaves(simd::level()) } else { None };
+        let in_space = kernel.unwrap_or(in_space);
+        Sum { noise, combine, octaves, last: 1.0, lacunarity: 2.0, gain: 0.5, scales, in_space }.scaled()
+    }
+
+    /// The octaves, for kernels that have them in lanes.
+    #[inline(always)]
+    pub(crate) fn lanes(&self) -> &[Lanes] {
+        &self.scales.lanes
     }
 
     /// With the scales that follow from the rest.
@@ -82,7 +93,7 @@ impl Sum {
         let single = |numbers: &[f64]| -> Vec<f32> { numbers.iter().map(|&number| number as f32).collect() };
         let slopes: Vec<f64> = frequencies.iter().zip(&amplitudes).map(|(f, a)| f * a).collect();
         let singles = [single(&frequencies), single(&amplitudes), single(&slopes)];
-        let lanes = LaneTerms::new(self.combine == Combine::Absolute, &singles[0], &singles[1]);
+        let lanes = Lanes::of(self.combine == Combine::Absolute, &singles[0], &singles[1]);
         self.scales = Arc::new(Scales { frequencies, amplitudes, singles, lanes });
         self
     }
@@ -246,10 +257,8 @@ impl Sum {
             }
             while values.len() - done <= FEW && done < values.len() {
                 let point = points.map(|coordinates| coordinates[done]);
-                values[done] = match self.noise.at_point() {
-                    Some(kernel) if D == 3 && level == simd::level() => {
-                        kernel.sum(self.noise.tables(), &self.scales.lanes, [point[0], point[1], point[D - 1]])
-                    }
+                values[done] = match point[..] {
+                    [x, y, z] if level == simd::level() && self.noise.has_kernel() => self.in_space.at(self, [x, y, z]),
                     _ => match self.noise.sum_at(level, &self.terms(), point) {
                         Some(sum) => sum,
                         None => break,
@@ -319,21 +328,23 @@ impl Sum {
     /// The value at one point in single precision, with the machine's vector instructions.
     #[inline]
     pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
-        if !self.combine.is_plain() {
-            return self.value(point);
-        }
-        match self.noise.at_point() {
-            Some(kernel) if D == 3 => {
-                kernel.sum(self.noise.tables(), &self.scales.lanes, [point[0], point[1], point[D - 1]])
-            }
+        match point[..] {
+            [x, y, z] => self.in_space.at(self, [x, y, z]),
             _ => self.sum_at(point),
         }
+    }
+
+    /// [`Sum::sum_at`] in space.
+    fn sum_in_space(&self, x: f32, y: f32, z: f32) -> f32 {
+        self.sum_at([x, y, z])
     }
 
     /// The sum at one point by the generic evaluation, with its octaves in lanes if they can be.
     #[inline(never)]
     fn sum_at<const D: usize>(&self, point: [f32; D]) -> f32 {
-        self.noise.sum_at(simd::level(), &self.terms(), point).unwrap_or_else(|| self.value(point))
+        let in_lanes =
+            if self.combine.is_plain() { self.noise.sum_at(simd::level(), &self.terms(), point) } else { None };
+        in_lanes.unwrap_or_else(|| self.value(point))
     }
 
     /// The values at many points, each with its footprint: the same bits as [`Sum::value_filtered`] in single precision.

@@ -1,6 +1,5 @@
 //! Hashing the corners of cells one cell at a time, by reads from tables: gathers are slower.
 
-use std::arch::asm;
 use std::arch::x86_64::*;
 use std::ops::BitOr;
 
@@ -16,16 +15,10 @@ pub(super) fn columns(x: __m256i, y: __m256i) -> __m256i {
     _mm256_add_epi32(_mm256_add_epi32(_mm256_slli_epi32::<8>(x), x), y)
 }
 
-/// The column of one cell, which is given along z, y, x, and its z.
-#[inline]
-#[target_feature(enable = "avx2")]
-pub(super) fn column(cell: __m128i) -> (u32, u8) {
-    let bytes = _mm_shuffle_epi8(cell, _mm_setr_epi8(0, -1, -1, -1, 4, -1, 8, -1, -1, -1, -1, -1, -1, -1, -1, -1));
-    let products = _mm_madd_epi16(bytes, _mm_setr_epi16(1, 0, 1, CornerTables::ROW as i16, 0, 0, 0, 0));
-    let mut halves = _mm_cvtsi128_si64(products) as u64;
-    // SAFETY: this is no instruction. (The compiler would rather take the halves from the vector one by one, which is slower.)
-    unsafe { asm!("/* {0} */", inout(reg) halves, options(pure, nomem, nostack, preserves_flags)) };
-    ((halves >> 32) as u32, halves as u8)
+/// The column of one cell, for [`hash`].
+#[inline(always)]
+pub(in crate::simd) fn column(x: u8, y: u8) -> u32 {
+    u32::from(x) * CornerTables::ROW as u32 + u32::from(y)
 }
 
 /// Codes of a cell's corners, an eighth of the bits each: from the lowest on (0, 0, 0), (0, 0, 1), (0, 1, 0), … (1, 1, 1).

@@ -1,6 +1,6 @@
 //! Eight lanes: AVX2 and FMA. Tables are read by gathers.
 
-mod corners;
+pub(super) mod corners;
 pub(super) mod improved;
 pub(super) mod single;
 
@@ -233,8 +233,14 @@ fn lines() -> [__m256; 3] {
 impl F32x8 {
     /// From the machine's register.
     #[inline(always)]
-    pub fn from_lanes(lanes: __m256) -> Self {
-        F32x8(lanes)
+    pub fn from_register(register: __m256) -> Self {
+        F32x8(register)
+    }
+
+    /// The machine's register.
+    #[inline(always)]
+    pub fn register(self) -> __m256 {
+        self.0
     }
 
     /// The components of the edge's line, by the low three bits of its code.

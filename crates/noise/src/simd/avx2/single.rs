@@ -1,140 +1,287 @@
-//! Improved noise at one point: the eight corners of its cell in the lanes of one AVX2 vector.
+//! Improved noise at one point: an octave's eight corners in the lanes of one vector, and two octaves side by side where they are blended.
+//!
+//! A call overlaps with the next ones as far as the machine has room for what waits. Hence little waits for the hash of a cell, which is
+//! worked out with integers, and constants are read where they are used: each one in a register would take room.
 
+use std::arch::asm;
 use std::arch::x86_64::*;
 
-use super::improved::{Nothing, blend as blend_octaves};
-use super::{F32x8, I32x8, corners};
+use super::{F32x8, corners};
 use crate::basis::Tables;
+use crate::noise::Noise;
 use crate::number::Real;
-use crate::simd::{LaneTerms, Vector};
+use crate::simd::sse::F32x4;
+use crate::simd::{Lanes, Vector};
+use crate::sum::Sum;
 use crate::table::CornerTables;
 
 /// The noise at a point. (The coordinates come one by one, in registers: reading them as a vector, just after they were
 /// written one by one, would stall.)
 #[target_feature(enable = "avx2,fma")]
-pub(in crate::simd) fn improved(tables: &Tables, x: f32, y: f32, z: f32) -> f32 {
-    let position = position(x, y, z);
-    noise(&tables.corners, position, _mm_cvttps_epi32(_mm_floor_ps(position)))
+pub(in crate::simd) fn improved(of: &Noise, x: f32, y: f32, z: f32) -> f32 {
+    let point = point(x, y, z);
+    noise(&of.tables().corners, point, point.cells()).first_lanes()[0]
+}
+
+/// The sum at a point.
+#[target_feature(enable = "avx2,fma")]
+pub(in crate::simd) fn sum(of: &Sum, x: f32, y: f32, z: f32) -> f32 {
+    add_octaves(0.0, of.noise().tables(), of.lanes(), x, y, z)
+}
+
+/// The sum and some octaves at a point, two at a time. (A sum that began with 0 is never −0.)
+#[target_feature(enable = "avx2,fma")]
+fn add_octaves(mut sum: f32, tables: &Tables, octaves: &[Lanes], x: f32, y: f32, z: f32) -> f32 {
+    let Some((lanes, others)) = octaves.split_first() else { return sum };
+    let point = point(x, y, z);
+    let twice = F32x8::from_register(_mm256_set_m128(point.register(), point.register()));
+    // (No loop: before one, the compiler would put constants into registers.)
+    macro_rules! from_pair {
+        ($pair:literal) => {
+            let (frequencies, amplitudes) = (&lanes.frequencies_of_pairs[$pair], &lanes.amplitudes_of_pairs[$pair]);
+            if lanes.count == 2 * $pair + 1 {
+                sum = add::<F32x4, 1>(sum, &tables.corners, point, [frequencies, amplitudes], &lanes.mask);
+            } else if lanes.count > 2 * $pair + 1 {
+                sum = add::<F32x8, 2>(sum, &tables.corners, twice, [frequencies, amplitudes], &lanes.mask);
+            }
+        };
+    }
+    from_pair!(0);
+    from_pair!(1);
+    from_pair!(2);
+    from_pair!(3);
+    if others.is_empty() { sum } else { add_others(sum, tables, others, x, y, z) }
+}
+
+/// Octaves after the first eight. (Apart: few sums have them.)
+#[inline(never)]
+#[target_feature(enable = "avx2,fma")]
+fn add_others(sum: f32, tables: &Tables, octaves: &[Lanes], x: f32, y: f32, z: f32) -> f32 {
+    add_octaves(sum, tables, octaves, x, y, z)
+}
+
+/// The sum and as many octaves as there is room for, one after the other.
+#[inline(always)]
+fn add<V: Octaves<N>, const N: usize>(
+    mut sum: f32,
+    tables: &CornerTables,
+    point: V,
+    [frequencies, amplitudes]: [&[f32; 8]; 2],
+    mask: &[u32; 8],
+) -> f32 {
+    let position = point * V::first(frequencies);
+    let parts = noise(tables, position, position.cells()).masked(mask) * V::first(amplitudes);
+    for part in parts.first_lanes() {
+        sum += part;
+    }
+    sum
 }
 
 /// A point's coordinates along z, y, x, so that what is blended last comes first.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub(in crate::simd) fn position(x: f32, y: f32, z: f32) -> __m128 {
-    _mm_setr_ps(z, y, x, 0.0)
+pub(in crate::simd) fn point(x: f32, y: f32, z: f32) -> F32x4 {
+    F32x4::from_register(_mm_setr_ps(z, y, x, 0.0))
 }
 
-/// The noise at a point whose cell is known. (Cell and offset are found apart: everything else waits for the cell.)
-#[inline]
-#[target_feature(enable = "avx2")]
-pub(in crate::simd) fn noise(tables: &CornerTables, position: __m128, cell: __m128i) -> f32 {
-    let (column, z) = corners::column(cell);
-    // SAFETY: the column is that of a cell.
-    let codes = unsafe { corners::hash(tables, &tables.parts, column, z) };
-    let offset = _mm_sub_ps(position, _mm_floor_ps(position));
-    blend(dots(codes, offset), offset)
+/// A cell's [`corners::column`], and the lowest byte of its z.
+#[derive(Clone, Copy)]
+pub(in crate::simd) struct Cell {
+    pub column: u32,
+    pub z: u8,
 }
 
-/// The sum at a point, with its octaves in the lanes.
-#[target_feature(enable = "avx2,fma")]
-pub(in crate::simd) fn sum(tables: &Tables, terms: &LaneTerms, x: f32, y: f32, z: f32) -> f32 {
-    let mut sum = 0.0;
-    let mut rest = terms.octaves;
-    for lanes in &terms.lanes {
-        let count = rest.min(8);
-        let noises = octaves(tables, F32x8::load(&lanes.frequencies), count, [x, y, z]);
-        sum = add_lanes(sum, noises, F32x8::load(&lanes.amplitudes), terms.absolute, count);
-        rest -= count;
+/// The octaves' noises, in their first lanes, at positions whose cells are known. (Cell and offset are found apart: everything else
+/// waits for the cell.)
+#[inline(always)]
+pub(in crate::simd) fn noise<V: Octaves<N>, const N: usize>(tables: &CornerTables, position: V, cells: [Cell; N]) -> V {
+    let mut codes = [0; N];
+    for i in 0..N {
+        // SAFETY: the column is that of a cell.
+        codes[i] = unsafe { corners::hash(tables, &tables.parts, cells[i].column, cells[i].z) };
     }
-    sum
+    let offset = position - position.floor();
+    let [left, right] = offset.corners(codes);
+    let curve = quintic(offset, |numbers| V::first(numbers.first_chunk().expect("eight of sixteen")));
+    let sides = lerp(curve.shuffled::<0b10_10_10_10>(), left, right);
+    let edges = lerp(curve.shuffled::<0b01_01_01_01>(), sides, sides.shuffled::<0b11_10_11_10>());
+    lerp(curve, edges, edges.shuffled::<0b01_01_01_01>())
 }
 
-/// The sum and the first lanes' noises, times their amplitudes, one after the other. (A sum that began with 0 is never −0.)
-#[inline]
-#[target_feature(enable = "avx2")]
-pub(in crate::simd) fn add_lanes(mut sum: f32, noises: F32x8, amplitudes: F32x8, absolute: bool, count: usize) -> f32 {
-    let noises = if absolute { noises.abs() } else { noises };
-    let mut parts = (noises * amplitudes).0;
-    for _ in 0..count {
-        sum += _mm256_cvtss_f32(parts);
-        parts = _mm256_permutevar8x32_ps(parts, _mm256_setr_epi32(1, 2, 3, 4, 5, 6, 7, 0));
-    }
-    sum
+/// `Curve::quintic`, with its constants from memory.
+#[inline(always)]
+pub(in crate::simd) fn quintic<R: Real>(t: R, load: impl Fn(&'static [f32; 16]) -> R) -> R {
+    let constants = constants();
+    let inner = t * load(&constants.six) - load(&constants.fifteen);
+    t * t * t * (t * inner + load(&constants.ten))
 }
 
-/// The noise at the point times each frequency, of which `count` are in use.
-#[inline]
-#[target_feature(enable = "avx2,fma")]
-fn octaves(tables: &Tables, frequencies: F32x8, count: usize, point: [f32; 3]) -> F32x8 {
-    let mut offset = [frequencies; 3];
-    let mut cells = [_mm256_setzero_si256(); 3];
-    for axis in 0..3 {
-        let position = F32x8::splat(point[axis]) * frequencies;
-        let floor = position.floor();
-        offset[axis] = position - floor;
-        cells[axis] = floor.to_int().0;
-    }
-    let [x, y, z] = cells;
-    let (mut columns, mut ends) = ([0u32; 8], [0u32; 8]);
-    // SAFETY: there is room for eight.
+#[inline(always)]
+fn lerp<R: Real>(t: R, a: R, b: R) -> R {
+    a + t * (b - a)
+}
+
+/// What is read as whole vectors.
+#[repr(C, align(64))]
+struct Constants {
+    signs: [f32; 8],
+    ends: [f32; 8],
+    x_and_y: [i32; 8],
+    z_and_y: [i32; 8],
+    six: [f32; 16],
+    fifteen: [f32; 16],
+    ten: [f32; 16],
+}
+
+static CONSTANTS: Constants = Constants {
+    signs: [0.0, 0.0, 0.0, 0.0, -0.0, -0.0, -0.0, -0.0],
+    ends: [0.0, -1.0, 0.0, -1.0, 0.0, 1.0, 0.0, 1.0],
+    x_and_y: [2, 2, 1, 1, 2, 2, 1, 1],
+    z_and_y: [0, 0, 1, 1, 0, 0, 1, 1],
+    six: [6.0; 16],
+    fifteen: [15.0; 16],
+    ten: [10.0; 16],
+};
+
+/// The constants. (If the compiler knew them, it would put them into registers first.)
+#[inline(always)]
+fn constants() -> &'static Constants {
+    let mut constants: *const Constants = &CONSTANTS;
+    // SAFETY: this is no instruction, and the pointer stays what it is.
     unsafe {
-        _mm256_storeu_si256(columns.as_mut_ptr().cast(), corners::columns(x, y));
-        _mm256_storeu_si256(ends.as_mut_ptr().cast(), z);
+        asm!("/* {0} */", inout(reg) constants, options(readonly, nostack, preserves_flags));
+        &*constants
     }
-    let tables = &tables.corners;
-    let hash = |lane: usize| {
-        if lane < count {
-            // SAFETY: the columns are those of cells.
-            unsafe { corners::hash(tables, &tables.choices, columns[lane], ends[lane] as u8) as i32 }
-        } else {
-            0
-        }
-    };
-    // (In registers: reading them as a vector, just after they were written one by one, would stall.)
-    let low = _mm_setr_epi32(hash(0), hash(1), hash(2), hash(3));
-    let high = if count > 4 { _mm_setr_epi32(hash(4), hash(5), hash(6), hash(7)) } else { _mm_setzero_si128() };
-    let codes = I32x8(_mm256_set_m128i(high, low));
-    blend_octaves(codes, offset, &mut Nothing)
 }
 
-/// The noise from the gradients' parts at the corners: they are halved axis by axis, x, y, z.
+/// Octaves side by side, four lanes each: coordinates along z, y, x, or corners.
+pub(in crate::simd) trait Octaves<const N: usize>: Real {
+    /// From the first numbers.
+    fn first(numbers: &[f32; 8]) -> Self;
+    /// Of the lanes, the bits of a mask.
+    fn masked(self, mask: &[u32; 8]) -> Self;
+    /// The cells of positions.
+    fn cells(self) -> [Cell; N];
+    /// What the corners of cells at the lower and at the upper end along x add, from the offset in the cell. In each octave: at
+    /// the ends (0, 0), (0, 1), (1, 0), (1, 1) along y and z.
+    fn corners(self, codes: [u64; N]) -> [Self; 2];
+    /// The lanes of each octave in another order, two bits for each, as in the instruction.
+    fn shuffled<const ORDER: i32>(self) -> Self;
+    /// The first lane of each octave.
+    fn first_lanes(self) -> [f32; N];
+}
+
+// SAFETY, for all `unsafe` blocks of the two: values of these types arise only in functions entered after the machine was found
+// to have AVX2.
+impl Octaves<1> for F32x4 {
+    #[inline(always)]
+    fn first(numbers: &[f32; 8]) -> Self {
+        F32x4::load(numbers.first_chunk().expect("four of eight"))
+    }
+    #[inline(always)]
+    fn masked(self, mask: &[u32; 8]) -> Self {
+        let mut register = self.register();
+        // SAFETY: the mask is longer. (The compiler would rather do this to one lane, with integers.)
+        unsafe {
+            asm!("vandps {0}, {0}, xmmword ptr [{1}]", inout(xmm_reg) register, in(reg) mask.as_ptr(), options(pure, readonly, nostack, preserves_flags));
+        }
+        F32x4::from_register(register)
+    }
+    #[inline(always)]
+    fn cells(self) -> [Cell; 1] {
+        unsafe { [cell(_mm_cvttps_epi32(self.floor().register()))] }
+    }
+    #[inline(always)]
+    fn corners(self, [codes]: [u64; 1]) -> [Self; 2] {
+        unsafe {
+            let corners = corners(codes, _mm256_set_m128(self.register(), self.register()));
+            let (left, right) = (_mm256_castps256_ps128(corners), _mm256_extractf128_ps::<1>(corners));
+            [F32x4::from_register(left), F32x4::from_register(right)]
+        }
+    }
+    #[inline(always)]
+    fn shuffled<const ORDER: i32>(self) -> Self {
+        F32x4::from_register(unsafe { _mm_permute_ps::<ORDER>(self.register()) })
+    }
+    #[inline(always)]
+    fn first_lanes(self) -> [f32; 1] {
+        unsafe { [_mm_cvtss_f32(self.register())] }
+    }
+}
+
+impl Octaves<2> for F32x8 {
+    #[inline(always)]
+    fn first(numbers: &[f32; 8]) -> Self {
+        F32x8::load(numbers)
+    }
+    #[inline(always)]
+    fn masked(self, mask: &[u32; 8]) -> Self {
+        F32x8(unsafe { _mm256_and_ps(self.0, _mm256_loadu_ps(mask.as_ptr().cast())) })
+    }
+    #[inline(always)]
+    fn cells(self) -> [Cell; 2] {
+        unsafe {
+            let cells = _mm256_cvttps_epi32(_mm256_floor_ps(self.0));
+            [cell(_mm256_castsi256_si128(cells)), cell(_mm256_extracti128_si256::<1>(cells))]
+        }
+    }
+    #[inline(always)]
+    fn corners(self, codes: [u64; 2]) -> [Self; 2] {
+        unsafe {
+            let first = corners(codes[0], _mm256_permute2f128_ps::<0x00>(self.0, self.0));
+            let second = corners(codes[1], _mm256_permute2f128_ps::<0x11>(self.0, self.0));
+            let left = _mm256_permute2f128_ps::<0x20>(first, second);
+            [F32x8(left), F32x8(_mm256_permute2f128_ps::<0x31>(first, second))]
+        }
+    }
+    #[inline(always)]
+    fn shuffled<const ORDER: i32>(self) -> Self {
+        F32x8(unsafe { _mm256_permute_ps::<ORDER>(self.0) })
+    }
+    #[inline(always)]
+    fn first_lanes(self) -> [f32; 2] {
+        unsafe { [_mm256_cvtss_f32(self.0), _mm_cvtss_f32(_mm256_extractf128_ps::<1>(self.0))] }
+    }
+}
+
+/// The cell with these coordinates along z, y, x.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn blend(dots: __m256, offset: __m128) -> f32 {
-    let curve = fade(offset);
-    let (left, right) = (_mm256_castps256_ps128(dots), _mm256_extractf128_ps::<1>(dots));
-    let sides = lerp(_mm_permute_ps::<0xaa>(curve), left, right);
-    let edges = lerp(_mm_movehdup_ps(curve), sides, _mm_movehl_ps(sides, sides));
-    _mm_cvtss_f32(lerp(curve, edges, _mm_movehdup_ps(edges)))
+fn cell(coordinates: __m128i) -> Cell {
+    let lowest = _mm_setr_epi8(4, 8, 0, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1);
+    let mut bytes = _mm_cvtsi128_si32(_mm_shuffle_epi8(coordinates, lowest)) as u32;
+    // SAFETY: this is no instruction. (The compiler would rather work on with them in vectors, which is slower.)
+    unsafe { asm!("/* {0:e} */", inout(reg) bytes, options(pure, nomem, nostack, preserves_flags)) };
+    // 256 x + y, and x once more.
+    const { assert!(CornerTables::ROW == 257) };
+    let (x_and_y, z) = (bytes & 0xffff, bytes >> 16);
+    Cell { column: x_and_y + (x_and_y >> 8), z: z as u8 }
 }
 
-/// What the corners contribute: each adds one of eight numbers, offsets along x and y, to one of eight others, along z and y. (None of
+/// What the corners of an octave's cell add: each one of eight numbers, offsets along x and y, and one of eight others, along z and y. (None of
 /// them is −0, and so the noise is not.)
 #[inline]
 #[target_feature(enable = "avx2")]
-fn dots(codes: u64, offset: __m128) -> __m256 {
-    let upper = _mm_sub_ps(offset, _mm_set1_ps(1.0));
-    let z_and_y = _mm_unpacklo_ps(offset, upper);
-    let x_and_y = _mm_shuffle_ps::<0xe4>(_mm_unpackhi_ps(offset, upper), z_and_y);
-    let both_signs = |offsets| _mm256_set_m128(_mm_sub_ps(_mm_setzero_ps(), offsets), offsets);
+fn corners(codes: u64, offset_twice: __m256) -> __m256 {
+    let constants = constants();
+    let (offset, ends) = (_mm256_xor_ps(offset_twice, load(&constants.signs)), load(&constants.ends));
+    let x_and_y = _mm256_add_ps(_mm256_permutevar_ps(offset, load_order(&constants.x_and_y)), ends);
+    let z_and_y = _mm256_add_ps(_mm256_permutevar_ps(offset, load_order(&constants.z_and_y)), ends);
     let first = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(codes as i64));
     let second = _mm256_srli_epi32::<4>(first);
-    _mm256_add_ps(
-        _mm256_permutevar8x32_ps(both_signs(x_and_y), first),
-        _mm256_permutevar8x32_ps(both_signs(z_and_y), second),
-    )
+    _mm256_add_ps(_mm256_permutevar8x32_ps(x_and_y, first), _mm256_permutevar8x32_ps(z_and_y, second))
 }
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn fade(t: __m128) -> __m128 {
-    let inner = _mm_sub_ps(_mm_mul_ps(t, _mm_set1_ps(6.0)), _mm_set1_ps(15.0));
-    let outer = _mm_add_ps(_mm_mul_ps(t, inner), _mm_set1_ps(10.0));
-    _mm_mul_ps(_mm_mul_ps(_mm_mul_ps(t, t), t), outer)
+fn load(numbers: &[f32; 8]) -> __m256 {
+    // SAFETY: there are eight.
+    unsafe { _mm256_loadu_ps(numbers.as_ptr()) }
 }
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn lerp(t: __m128, a: __m128, b: __m128) -> __m128 {
-    _mm_add_ps(a, _mm_mul_ps(t, _mm_sub_ps(b, a)))
+fn load_order(order: &[i32; 8]) -> __m256i {
+    // SAFETY: there are eight.
+    unsafe { _mm256_loadu_si256(order.as_ptr().cast()) }
 }
