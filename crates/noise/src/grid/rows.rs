@@ -12,7 +12,7 @@ use super::axis::{Axis, PADDING};
 use crate::basis::{Basis, Tables, hash};
 use crate::noise::Noise;
 use crate::number::{Dual, Integer, Real};
-use crate::simd::{Vector, Wide, copy_away};
+use crate::simd::{Away, Vector, Wide};
 use crate::sum::{Combine, Partial};
 
 /// An octave of a sum on a grid.
@@ -46,11 +46,15 @@ impl Wide for Rows<'_> {
     #[inline(always)]
     fn run<V: Vector<LANES>, const LANES: usize>(self) {
         let (width, [rows, planes]) = (self.width, self.rows);
-        let away = size_of_val(self.values) > LARGE;
-        let mut buffer = vec![0.0; if away { SIDE_BY_SIDE * width } else { 0 }];
+        let (mut near, mut away) = (self.values, None);
+        if size_of_val(near) > LARGE {
+            away = Some(Away::to(near));
+            near = &mut [];
+        }
+        let mut buffer = vec![0.0; if away.is_some() { SIDE_BY_SIDE * width } else { 0 }];
         let mut states: Vec<State<V, LANES>> =
             self.octaves.iter().map(|octave| State::new(self.combine, octave)).collect();
-        for (z, plane) in planes.zip(self.values.chunks_mut(width * rows.len())) {
+        for z in planes {
             for state in &mut states {
                 state.start_plane(z);
             }
@@ -61,8 +65,7 @@ impl Wide for Rows<'_> {
                     state.reach_row(y);
                     count = count.min(state.rows_in_cell(y));
                 }
-                let plane = &mut plane[(y - rows.start) * width..];
-                let values = if away { &mut buffer[..] } else { &mut plane[..] };
+                let values = if away.is_some() { &mut buffer[..] } else { &mut near[..] };
                 // (A loop for each way to combine: there is little else in it.)
                 let done = match (self.combine, count) {
                     (Combine::Plain, 4) => add::<V, LANES, 4>(Combine::Plain, &states, y, width, values),
@@ -72,14 +75,15 @@ impl Wide for Rows<'_> {
                     (Combine::Absolute, 2 | 3) => add::<V, LANES, 2>(Combine::Absolute, &states, y, width, values),
                     (combine, _) => add::<V, LANES, 1>(combine, &states, y, width, values),
                 };
-                if away {
-                    copy_away::<V, LANES>(&buffer[..done * width], &mut plane[..done * width]);
+                match &mut away {
+                    Some(away) => away.send::<V, LANES>(&buffer[..done * width]),
+                    None => near = &mut near[done * width..],
                 }
                 y += done;
             }
         }
-        if away {
-            V::after_stores_away();
+        if let Some(away) = away {
+            away.finish::<V, LANES>();
         }
     }
 }

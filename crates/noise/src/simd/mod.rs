@@ -448,17 +448,85 @@ pub(crate) trait Vector<const LANES: usize>: Real {
     fn expand(window: &[f32; LANES], places: Self::Int) -> Self;
 }
 
-/// Copies numbers to where they are not needed soon; [`Vector::after_stores_away`] ends it.
+/// Numbers on their way past the caches to where they are not needed soon, in their order.
+///
+/// Lines of memory go there as a whole. One of which a part was written the usual way would first be read, and until then
+/// everything that is written later would wait: hence parts of a line wait here for the others.
+pub(crate) struct Away<'a> {
+    /// Where the next numbers go.
+    rest: &'a mut [f32],
+    /// How many of them lie before the first whole line.
+    before: usize,
+    line: Line,
+    /// How many numbers wait in the line.
+    waiting: usize,
+}
+
+/// A line of memory.
+#[repr(align(64))]
+struct Line([f32; LINE]);
+const LINE: usize = 16;
+
+impl<'a> Away<'a> {
+    /// To these numbers.
+    pub fn to(rest: &'a mut [f32]) -> Self {
+        let before = rest.as_ptr().align_offset(size_of::<Line>());
+        Away { rest, before, line: Line([0.0; LINE]), waiting: 0 }
+    }
+
+    /// The next numbers.
+    ///
+    /// # Panics
+    /// When there is no room for them.
+    #[inline(always)]
+    pub fn send<V: Vector<LANES>, const LANES: usize>(&mut self, mut numbers: &[f32]) {
+        assert!(self.waiting + numbers.len() <= self.rest.len(), "there is room for the numbers");
+        if self.before > 0 {
+            let (first, others) = numbers.split_at(self.before.min(numbers.len()));
+            self.take(first.len()).copy_from_slice(first);
+            (self.before, numbers) = (self.before - first.len(), others);
+        }
+        if self.waiting > 0 {
+            let (first, others) = numbers.split_at((LINE - self.waiting).min(numbers.len()));
+            self.line.0[self.waiting..][..first.len()].copy_from_slice(first);
+            (self.waiting, numbers) = (self.waiting + first.len(), others);
+            if self.waiting < LINE {
+                return;
+            }
+            let line = self.take(LINE);
+            store_away::<V, LANES>(&self.line.0, line);
+            self.waiting = 0;
+        }
+        let whole = numbers.len() / LINE * LINE;
+        let (lines, last) = numbers.split_at(whole);
+        store_away::<V, LANES>(lines, self.take(whole));
+        self.line.0[..last.len()].copy_from_slice(last);
+        self.waiting = last.len();
+    }
+
+    /// Writes what waits: there are no more numbers.
+    #[inline(always)]
+    pub fn finish<V: Vector<LANES>, const LANES: usize>(mut self) {
+        let waiting = self.waiting;
+        self.take(waiting).copy_from_slice(&self.line.0[..waiting]);
+        V::after_stores_away();
+    }
+
+    /// Where so many numbers go.
+    #[inline(always)]
+    fn take(&mut self, count: usize) -> &'a mut [f32] {
+        let (taken, rest) = std::mem::take(&mut self.rest).split_at_mut(count);
+        self.rest = rest;
+        taken
+    }
+}
+
+/// Copies whole lines.
 #[inline(always)]
-pub(crate) fn copy_away<V: Vector<LANES>, const LANES: usize>(from: &[f32], to: &mut [f32]) {
-    let unaligned = to.as_ptr().align_offset(size_of::<[f32; LANES]>()).min(to.len());
-    let ((first, from), (head, to)) = (from.split_at(unaligned), to.split_at_mut(unaligned));
-    let ((from, last), (body, tail)) = (from.as_chunks(), to.as_chunks_mut());
-    head.copy_from_slice(first);
-    for (to, from) in body.iter_mut().zip(from) {
+fn store_away<V: Vector<LANES>, const LANES: usize>(from: &[f32], to: &mut [f32]) {
+    for (from, to) in from.as_chunks().0.iter().zip(to.as_chunks_mut().0) {
         V::load(from).store_away(to);
     }
-    tail.copy_from_slice(last);
 }
 
 impl Vector<1> for f32 {
@@ -578,3 +646,46 @@ macro_rules! operators {
 }
 #[cfg(target_arch = "x86_64")]
 use operators;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sends pieces of these lengths to a slice that begins so many numbers after a line of memory does.
+    struct Pieces<'a> {
+        lengths: &'a [usize],
+        offset: usize,
+    }
+
+    impl Wide for Pieces<'_> {
+        #[inline(always)]
+        fn run<V: Vector<LANES>, const LANES: usize>(self) {
+            let count: usize = self.lengths.iter().sum();
+            let numbers: Vec<f32> = (0..count).map(|i| i as f32).collect();
+            let mut memory = vec![-1.0; count + 3 * LINE];
+            let start = memory.as_ptr().align_offset(size_of::<Line>()) + self.offset;
+            let mut away = Away::to(&mut memory[start..]);
+            let mut rest = &numbers[..];
+            for &length in self.lengths {
+                let (piece, later) = rest.split_at(length);
+                away.send::<V, LANES>(piece);
+                rest = later;
+            }
+            away.finish::<V, LANES>();
+            assert_eq!(memory[start..][..count], numbers);
+            assert!(memory[..start].iter().chain(&memory[start + count..]).all(|&number| number == -1.0));
+        }
+    }
+
+    #[test]
+    fn numbers_on_their_way_past_the_caches_arrive_and_nothing_else_is_written() {
+        for level in Level::ALL {
+            for offset in 0..=LINE {
+                for lengths in [&[][..], &[1, 2, 3], &[16, 16], &[100, 5, 7, 0, 4, 64, 33], &[3; 40], &[15, 17, 31, 1]]
+                {
+                    run_wide(level, Pieces { lengths, offset });
+                }
+            }
+        }
+    }
+}

@@ -9,7 +9,7 @@ use crate::basis::corners::Corners;
 use crate::basis::improved::blend_codes;
 use crate::number::Dual;
 use crate::simd::avx2::F32x8;
-use crate::simd::{self, Terms, Vector};
+use crate::simd::{Away, Terms, Vector};
 
 /// The coordinates of a step along each axis.
 pub(super) type Point<'a, const STEP: usize> = [&'a [f32; STEP]; 3];
@@ -170,21 +170,25 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
     outputs: &mut [&mut [f32]; N],
 ) {
     let steps = outputs[0].len() / STEP;
-    let mut copy =
-        if steps * STEP < FAR { None } else { Some(Block { points: [[0.0; BLOCK]; 3], sums: [[0.0; BLOCK]; N] }) };
+    let mut near = outputs.each_mut().map(std::mem::take);
+    let mut far = None;
+    if steps * STEP >= FAR {
+        let away = std::mem::replace(&mut near, std::array::from_fn(|_| &mut [][..])).map(Away::to);
+        far = Some((Block { points: [[0.0; BLOCK]; 3], sums: [[0.0; BLOCK]; N] }, away));
+    }
     for start in (0..steps).step_by(BLOCK / STEP) {
         let end = steps.min(start + BLOCK / STEP);
         let count = (end - start) * STEP;
         let mut block = points;
         let mut sums: [&mut [f32]; N];
-        match &mut copy {
+        match &mut far {
             None => {
                 for (block, points) in block.iter_mut().zip(points) {
                     *block = &points[start..end];
                 }
-                sums = outputs.each_mut().map(|output| &mut output[start * STEP..end * STEP]);
+                sums = near.each_mut().map(|output| &mut output[start * STEP..end * STEP]);
             }
-            Some(copy) => {
+            Some((copy, _)) => {
                 for (axis, points) in points.iter().enumerate() {
                     copy.points[axis][..count].copy_from_slice(points[start..end].as_flattened());
                 }
@@ -195,14 +199,16 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
             }
         }
         octaves_of_block::<USE, H, STEP, N>(halves, terms, block, &mut sums, (points, start + BLOCK / STEP));
-        if let Some(copy) = &copy {
-            for (output, sums) in outputs.iter_mut().zip(&copy.sums) {
-                simd::copy_away::<F32x8, 8>(&sums[..count], &mut output[start * STEP..end * STEP]);
+        if let Some((copy, away)) = &mut far {
+            for (away, sums) in away.iter_mut().zip(&copy.sums) {
+                away.send::<F32x8, 8>(&sums[..count]);
             }
         }
     }
-    if copy.is_some() {
-        <F32x8 as Vector<8>>::after_stores_away();
+    if let Some((_, away)) = far {
+        for away in away {
+            away.finish::<F32x8, 8>();
+        }
     }
 }
 
