@@ -7,7 +7,7 @@ use crate::basis::cellular::{Cellular, Feature, Metric};
 use crate::basis::{Basis, Period, Tables, cellular, classic, improved, lattice, simplex, value, white};
 use crate::dispatch::{Evaluate, OverSlices, over_slices};
 use crate::number::{Dual, Real};
-use crate::simd::{self, FEW, InSpace, Level, Terms};
+use crate::simd::{self, FEW, InBatch, InSpace, Level, Terms};
 
 /// A noise: points in, numbers out. Cheap to clone; immutable.
 #[derive(Debug, Clone)]
@@ -20,6 +20,7 @@ pub struct Noise {
     /// Whether this is the noise that the kernels made by hand are for.
     has_kernel: bool,
     in_space: InSpace<Noise>,
+    in_batch: Option<InBatch>,
 }
 
 /// Why [`Noise::with_period`] refused.
@@ -57,6 +58,7 @@ impl Noise {
             tables: Arc::new(Tables::new(seed)),
             has_kernel: false,
             in_space: InSpace::by(Noise::value_in_space),
+            in_batch: None,
         };
         noise.with_kernels()
     }
@@ -65,6 +67,7 @@ impl Noise {
     fn with_kernels(mut self) -> Self {
         self.has_kernel = self.basis == Basis::Improved && self.period == [0.0; 4];
         let kernel = if self.has_kernel { InSpace::improved(simd::level()) } else { None };
+        self.in_batch = if self.has_kernel { InBatch::improved(simd::level()) } else { None };
         self.in_space = kernel.unwrap_or(InSpace::by(Noise::value_in_space));
         self
     }
@@ -162,8 +165,16 @@ impl Noise {
     ///
     /// # Panics
     /// When the slices differ in length.
+    #[inline(always)]
     pub fn fill<const D: usize>(&self, points: [&[f32]; D], values: &mut [f32]) {
-        self.fill_at(simd::level(), points, values);
+        if let (&[x, y, z], Some(kernel)) = (&points[..], self.in_batch)
+            && let (Ok(x), Ok(y), Ok(z), Ok(values)) =
+                (x.try_into(), y.try_into(), z.try_into(), (&mut *values).try_into())
+        {
+            kernel.fill(&self.tables, [x, y, z], values);
+        } else {
+            self.fill_at(simd::level(), points, values);
+        }
     }
 
     /// [`Noise::fill`] with the instructions of a level, at most those of the machine. For tests and measurements.

@@ -9,7 +9,7 @@ use crate::basis::corners::Corners;
 use crate::basis::improved::blend_codes;
 use crate::number::Dual;
 use crate::simd::avx2::F32x8;
-use crate::simd::{Away, Terms, Vector};
+use crate::simd::{Away, BATCH, Terms, Vector};
 
 /// The coordinates of a step along each axis.
 pub(super) type Point<'a, const STEP: usize> = [&'a [f32; STEP]; 3];
@@ -98,11 +98,22 @@ pub(super) fn sum<H: Halves<STEP>, const STEP: usize, const N: usize>(
         return 0;
     }
     match terms {
-        None => octaves_of_block::<ALONE, H, STEP, N>(halves, &ONE, points, &mut outputs, (points, AHEAD / STEP)),
+        None => octaves_of_block::<ALONE, H, STEP, N>(halves, &ONE, points, &mut outputs, Some((points, AHEAD / STEP))),
         Some(terms) if terms.absolute => octaves::<ABSOLUTE, H, STEP, N>(halves, terms, points, &mut outputs),
         Some(terms) => octaves::<PLAIN, H, STEP, N>(halves, terms, points, &mut outputs),
     }
     steps * STEP
+}
+
+/// The noise itself at a batch of points.
+#[inline(always)]
+pub(super) fn batch<H: Halves<STEP>, const STEP: usize>(
+    halves: &H,
+    [x, y, z]: [&[f32; BATCH]; 3],
+    values: &mut [f32; BATCH],
+) {
+    let points = [x.as_chunks().0, y.as_chunks().0, z.as_chunks().0];
+    octaves_of_block::<ALONE, H, STEP, 1>(halves, &ONE, points, &mut [values], None);
 }
 
 /// The noise itself at points that are not in columns yet, a multiple of `STEP` of them; returns how many. They are taken apart
@@ -198,7 +209,7 @@ fn octaves<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
                 sums = copy.sums.each_mut().map(|sums| &mut sums[..count]);
             }
         }
-        octaves_of_block::<USE, H, STEP, N>(halves, terms, block, &mut sums, (points, start + BLOCK / STEP));
+        octaves_of_block::<USE, H, STEP, N>(halves, terms, block, &mut sums, Some((points, start + BLOCK / STEP)));
         if let Some((copy, away)) = &mut far {
             for (away, sums) in away.iter_mut().zip(&copy.sums) {
                 away.send::<F32x8, 8>(&sums[..count]);
@@ -223,14 +234,15 @@ struct Block<const N: usize> {
     sums: [[f32; BLOCK]; N],
 }
 
-/// The sum of octaves at the points of a block, while the next ones are called for, which are those from a step of some slices on.
+/// The sum of octaves at the points of a block, while the next ones are called for, if there are any: those from a step of some slices
+/// on.
 #[inline(always)]
 fn octaves_of_block<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: usize>(
     halves: &H,
     terms: &Terms,
     [x, y, z]: [&[[f32; STEP]]; 3],
     outputs: &mut [&mut [f32]; N],
-    (ahead, first): ([&[[f32; STEP]]; 3], usize),
+    ahead: Option<([&[[f32; STEP]]; 3], usize)>,
 ) {
     let steps = outputs[0].len() / STEP;
     assert!(x.len() == steps && y.len() == steps && z.len() == steps);
@@ -259,7 +271,9 @@ fn octaves_of_block<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: 
     for index in 0..=last {
         let octave = Octave::of(terms, index);
         for i in 0..hashed_by_then {
-            if index == 0 {
+            if index == 0
+                && let Some((ahead, first)) = ahead
+            {
                 prefetch(ahead, first + i);
             }
             let later = (octave.frequency, point(i + H::LEAD));
@@ -278,7 +292,9 @@ fn octaves_of_block<const USE: u8, H: Halves<STEP>, const STEP: usize, const N: 
     halves.complete::<N>(&mut codes, step + H::LEAD);
     for i in 0..H::LEAD {
         let (point, sums) = (point(hashed_by_then + i), sums(outputs, hashed_by_then + i));
-        prefetch(ahead, first + hashed_by_then + i);
+        if let Some((ahead, first)) = ahead {
+            prefetch(ahead, first + hashed_by_then + i);
+        }
         halves.finish::<USE, N>(&Octave::of(terms, last), point, sums, &codes, step + i);
     }
 }

@@ -13,7 +13,7 @@ use crate::basis::Tables;
 use crate::basis::corners::{Corners, Curve};
 use crate::number::{Dual, Integer, Real};
 use crate::simd::pipeline::{self, ALONE, Halves, Octave, PLAIN, Point, Sums};
-use crate::simd::{Terms, Vector, triples};
+use crate::simd::{BATCH, Terms, Vector, triples};
 use crate::table::{ColumnCodes, CornerTables};
 
 /// Points in a vector, and in a step.
@@ -29,6 +29,18 @@ pub(in crate::simd) fn sum<const N: usize>(
 ) -> usize {
     let whole = outputs[0].len() / LANES * LANES;
     pipeline::sum(&Staged(&tables.corners), terms, [&x[..whole], &y[..whole], &z[..whole]], outputs)
+}
+
+/// The noise itself at a batch of points.
+#[target_feature(enable = "avx2,fma")]
+pub(in crate::simd) fn batch(
+    tables: &Tables,
+    x: &[f32; BATCH],
+    y: &[f32; BATCH],
+    z: &[f32; BATCH],
+    values: &mut [f32; BATCH],
+) {
+    pipeline::batch(&Staged(&tables.corners), [x, y, z], values);
 }
 
 /// The noise at the first points, which are not in columns, a multiple of 8 of them; returns how many.

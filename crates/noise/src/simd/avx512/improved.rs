@@ -12,7 +12,7 @@ use crate::basis::corners::{Corners, Curve};
 use crate::basis::improved::blend_dots;
 use crate::number::{Integer, Real};
 use crate::simd::pipeline::{self, ALONE, Halves, Octave, PLAIN, Point, Sums};
-use crate::simd::{Terms, Vector, triples};
+use crate::simd::{BATCH, Terms, Vector, triples};
 
 /// Points that take part in one step.
 pub(super) const STEP: usize = 64;
@@ -27,6 +27,18 @@ pub(in crate::simd) fn sum<const N: usize>(
 ) -> usize {
     let whole = outputs[0].len() / STEP * STEP;
     pipeline::sum(&InSpace(tables), terms, [&x[..whole], &y[..whole], &z[..whole]], outputs)
+}
+
+/// The noise itself at a batch of points.
+#[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
+pub(in crate::simd) fn batch(
+    tables: &Tables,
+    x: &[f32; BATCH],
+    y: &[f32; BATCH],
+    z: &[f32; BATCH],
+    values: &mut [f32; BATCH],
+) {
+    pipeline::batch(&InSpace(tables), [x, y, z], values);
 }
 
 /// The noise at the first points, which are not in columns, a multiple of 64 of them; returns how many.
