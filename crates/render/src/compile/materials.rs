@@ -187,7 +187,9 @@ fn modifier(kind: &ModifierKind, pictures: &mut Pictures<'_>, diagnostics: &mut 
     };
     match kind {
         ModifierKind::Bump { texture, scale } => match pictures.named(texture) {
-            Some(Ok(procedural)) => Some(Modifier::BumpProcedural { texture: procedural.texture, scale: *scale }),
+            Some(Ok(procedural)) => {
+                Some(Modifier::BumpProcedural { texture: Box::new(procedural.texture), scale: *scale })
+            }
             Some(Err(diagnostic)) => {
                 diagnostics.push(diagnostic);
                 None

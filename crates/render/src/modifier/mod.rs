@@ -19,7 +19,7 @@ pub(crate) enum Modifier {
     /// Heights from a picture: `scale` multiplies the difference of neighbouring texels.
     Bump { picture: Arc<PictureMap>, scale: f32 },
     /// Heights from a procedural texture: `scale` multiplies its gradient in world units.
-    BumpProcedural { texture: Texture, scale: f32 },
+    BumpProcedural { texture: Box<Texture>, scale: f32 },
     /// Normals from the colours of a picture.
     NormalMap { picture: Arc<PictureMap> },
     /// Heights from Sunflow's noise.

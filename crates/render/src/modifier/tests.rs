@@ -92,7 +92,7 @@ fn procedural_bumps_agree_with_differences_of_the_height() {
     let scale = 0.05;
     for (name, space) in [("marble", "world"), ("stone", "local"), ("organic", "local"), ("water", "world")] {
         let texture = Texture::build(name, &[("space", Value::Choice(space))]).expect("these arguments are right");
-        let modifier = Modifier::BumpProcedural { texture: texture.clone(), scale };
+        let modifier = Modifier::BumpProcedural { texture: Box::new(texture.clone()), scale };
         let mut off = 0;
         for i in 0..60 {
             let at = place(&object_from_world, i);
@@ -123,7 +123,7 @@ fn textures_in_texture_coordinates_tilt_along_the_basis() {
     let at = place(&object_from_world, 5);
     let [du, dv] = texture.value(Dual::<f32, 2>::point(at.uv.into())).gradient;
     let expected = (at.normal - 0.1 * (at.tangent[0] * du + at.tangent[1] * dv)).normalize();
-    assert_near(Modifier::BumpProcedural { texture, scale: 0.1 }.normal(&at), expected, 1e-6);
+    assert_near(Modifier::BumpProcedural { texture: Box::new(texture), scale: 0.1 }.normal(&at), expected, 1e-6);
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn results_are_unit_vectors_whatever_the_input() {
             Modifier::Bump { picture: wild.clone(), scale },
             Modifier::NormalMap { picture: wild },
             Modifier::NormalMap { picture: picture(1, 1, |_, _| [0.5; 3]) },
-            Modifier::BumpProcedural { texture: texture.clone(), scale },
+            Modifier::BumpProcedural { texture: Box::new(texture.clone()), scale },
             Modifier::Perlin { function: number as i32 - 1, size: scale, scale },
             Modifier::Perlin { function: 1, size: 1.0, scale },
         ];
