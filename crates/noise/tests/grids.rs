@@ -101,6 +101,38 @@ fn parts_of_a_grid_are_the_whole() {
 }
 
 #[test]
+fn gradients_on_a_grid_are_those_of_its_points() {
+    let grid = Grid { origin: [-1.3, 0.2, 5.0], step: [0.17, 0.31, 0.9], count: [37, 5, 3] };
+    let points: Vec<[f32; 3]> = (0..grid.len())
+        .map(|i| [i % 37, i / 37 % 5, i / 185].into_iter().enumerate().map(|(axis, at)| grid.coordinate(axis, at)))
+        .map(|point| point.collect::<Vec<f32>>().try_into().unwrap())
+        .collect();
+    for &basis in Basis::ALL {
+        let noise = Noise::new(basis, 5);
+        let sum = Sum::new(noise.clone(), Combine::Absolute, 3);
+        for field in [Field::from(noise.clone()), Field::from(sum.clone())] {
+            let mut values = vec![f32::MAX; grid.len()];
+            let [mut x, mut y, mut z] = [(); 3].map(|_| vec![f32::MAX; grid.len()]);
+            match &field {
+                Field::Sum(sum) => sum.fill_grid_with_gradient(&grid, &mut values, [&mut x, &mut y, &mut z]),
+                _ => noise.fill_grid_with_gradient(&grid, &mut values, [&mut x, &mut y, &mut z]),
+            }
+            for (i, &point) in points.iter().enumerate() {
+                let (value, gradient) = field.value_and_gradient(point);
+                assert_eq!((values[i], [x[i], y[i], z[i]]), (value, gradient), "{field:?} at {point:?}");
+            }
+        }
+    }
+}
+
+#[test]
+#[should_panic(expected = "there is a derivative for each axis")]
+fn gradients_have_as_many_parts_as_the_grid_has_axes() {
+    let raster = Raster::new(Noise::new(Basis::Improved, 0), vec![vec![0.0, 1.0]; 2]);
+    raster.fill_with_gradient(0..2, &mut [0.0; 4], [&mut [0.0; 4]]);
+}
+
+#[test]
 fn large_grids_which_pass_the_caches_by_are_the_same() {
     let axis = |count: usize| (0..count).map(|i| i as f32 * 0.01).collect::<Vec<f32>>();
     let (width, height) = (2051, 2100);

@@ -137,19 +137,69 @@ impl Raster {
         simd::run_wide(level, Rows { combine: *combine, octaves, width, rows, values });
     }
 
-    /// The values point by point, row by row.
+    /// The values in some planes, and the exact derivatives along each axis: point by point, with the bits of
+    /// [`Field::fill_with_gradient`].
+    ///
+    /// # Panics
+    /// When there are no such planes or not D axes, or a slice has another length than they have points.
+    pub fn fill_with_gradient<const D: usize>(
+        &self,
+        planes: Range<usize>,
+        values: &mut [f32],
+        gradient: [&mut [f32]; D],
+    ) {
+        self.fill_with_gradient_at(simd::level(), planes, values, gradient);
+    }
+
+    /// [`Raster::fill_with_gradient`] with the instructions of a level, at most those of the machine. For tests and measurements.
+    ///
+    /// # Panics
+    /// When there are no such planes or not D axes, or a slice has another length than they have points.
+    pub fn fill_with_gradient_at<const D: usize>(
+        &self,
+        level: Level,
+        planes: Range<usize>,
+        values: &mut [f32],
+        mut gradient: [&mut [f32]; D],
+    ) {
+        assert!(planes.end <= self.planes(), "there are so many planes");
+        assert_eq!(self.axes.len(), D, "there is a derivative for each axis");
+        simd::assert_lengths(&gradient, values.len());
+        assert_eq!(values.len(), planes.len() * self.plane_len(), "there is a value for each point of the planes");
+        self.for_each_row::<D>(planes, values.len(), |points, row| {
+            let gradient = gradient.each_mut().map(|part| &mut part[row.clone()]);
+            self.field.fill_with_gradient_at(level, points, &mut values[row], gradient);
+        });
+    }
+
+    /// The values point by point.
     fn fill_points<const D: usize>(&self, level: Level, planes: Range<usize>, values: &mut [f32]) {
+        self.for_each_row::<D>(planes, values.len(), |points, row| {
+            self.field.fill_at(level, points, &mut values[row]);
+        });
+    }
+
+    /// The coordinates of so many points in some planes row by row, and which of those points they are.
+    fn for_each_row<const D: usize>(
+        &self,
+        planes: Range<usize>,
+        count: usize,
+        mut evaluate: impl FnMut([&[f32]; D], Range<usize>),
+    ) {
+        if count == 0 {
+            return;
+        }
         let width = self.axes[0].len();
         let mut columns: [Vec<f32>; D] = std::array::from_fn(|_| vec![0.0; width]);
         columns[0].copy_from_slice(&self.axes[0]);
         let first = planes.start * (self.plane_len() / width);
-        for (row, values) in values.chunks_mut(width).enumerate() {
+        for row in 0..count / width {
             let mut rest = first + row;
             for (column, coordinates) in columns.iter_mut().zip(&self.axes).skip(1) {
                 column.fill(coordinates[rest % coordinates.len()]);
                 rest /= coordinates.len();
             }
-            self.field.fill_at(level, columns.each_ref().map(Vec::as_slice), values);
+            evaluate(columns.each_ref().map(Vec::as_slice), row * width..(row + 1) * width);
         }
     }
 }
@@ -188,6 +238,21 @@ impl Noise {
     pub fn fill_grid_at<const D: usize>(&self, level: Level, grid: &Grid<D>, values: &mut [f32]) {
         fill_grid_at(self.clone().into(), level, grid, values);
     }
+
+    /// The values on a grid, x first, then y, and so on, and the exact derivatives along each axis: point by point, with the bits of
+    /// [`Noise::fill_with_gradient`].
+    ///
+    /// # Panics
+    /// When a slice has another length than the grid.
+    pub fn fill_grid_with_gradient<const D: usize>(
+        &self,
+        grid: &Grid<D>,
+        values: &mut [f32],
+        gradient: [&mut [f32]; D],
+    ) {
+        let raster = Raster::new(self.clone(), grid.axes());
+        raster.fill_with_gradient(0..raster.planes(), values, gradient);
+    }
 }
 
 impl Sum {
@@ -205,6 +270,21 @@ impl Sum {
     /// When `values` has another length than the grid.
     pub fn fill_grid_at<const D: usize>(&self, level: Level, grid: &Grid<D>, values: &mut [f32]) {
         fill_grid_at(self.clone().into(), level, grid, values);
+    }
+
+    /// The values on a grid, x first, then y, and so on, and the exact derivatives along each axis: point by point, with the bits of
+    /// [`Sum::fill_with_gradient`].
+    ///
+    /// # Panics
+    /// When a slice has another length than the grid.
+    pub fn fill_grid_with_gradient<const D: usize>(
+        &self,
+        grid: &Grid<D>,
+        values: &mut [f32],
+        gradient: [&mut [f32]; D],
+    ) {
+        let raster = Raster::new(self.clone(), grid.axes());
+        raster.fill_with_gradient(0..raster.planes(), values, gradient);
     }
 }
 
