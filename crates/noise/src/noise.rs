@@ -66,9 +66,9 @@ impl Noise {
     /// With the kernels for its basis and period.
     fn with_kernels(mut self) -> Self {
         self.has_kernel = self.basis == Basis::Improved && self.period == [0.0; 4];
-        let kernel = if self.has_kernel { InSpace::improved(simd::level()) } else { None };
-        self.in_batch = if self.has_kernel { InBatch::improved(simd::level()) } else { None };
-        self.in_space = kernel.unwrap_or(InSpace::by(Noise::value_in_space));
+        let level = self.has_kernel.then(simd::level);
+        self.in_space = level.and_then(InSpace::improved).unwrap_or(InSpace::by(Noise::value_in_space));
+        self.in_batch = level.and_then(InBatch::improved);
         self
     }
 
@@ -247,15 +247,14 @@ impl Noise {
         self.value([x, y, z])
     }
 
-    /// The value at one point in single precision, by the generic evaluation.
+    /// The value at one point that is not in space in single precision, by the generic evaluation.
     #[inline(never)]
     fn value_at(&self, point: &[f32]) -> f32 {
         match *point {
             [x] => self.value([x]),
             [x, y] => self.value([x, y]),
-            [x, y, z] => self.value([x, y, z]),
             [x, y, z, w] => self.value([x, y, z, w]),
-            _ => unreachable!("there are one to four dimensions"),
+            _ => unreachable!("there are one, two or four dimensions"),
         }
     }
 

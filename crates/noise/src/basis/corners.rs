@@ -81,7 +81,7 @@ impl<R: Real, const D: usize> Curve<R, D> {
         let (mut at, mut slope) = (*offset, *offset);
         for axis in 0..D {
             let t = offset[axis];
-            at[axis] = t * t * t * (t * (t * R::constant(6.0) - R::constant(15.0)) + R::constant(10.0));
+            at[axis] = quintic(t, [R::constant(6.0), R::constant(15.0), R::constant(10.0)]);
             let bump = t * (t - R::constant(1.0));
             slope[axis] = bump * bump * R::constant(30.0);
         }
@@ -99,6 +99,18 @@ impl<R: Real, const D: usize> Curve<R, D> {
         }
         Curve { at, slope }
     }
+}
+
+/// The curve of [`Curve::quintic`], from its coefficients.
+#[inline(always)]
+pub(crate) fn quintic<R: Real>(t: R, [six, fifteen, ten]: [R; 3]) -> R {
+    t * t * t * (t * (t * six - fifteen) + ten)
+}
+
+/// From a to b.
+#[inline(always)]
+pub(crate) fn lerp<R: Real>(t: R, a: R, b: R) -> R {
+    a + t * (b - a)
 }
 
 /// The corners' values, blended axis by axis, x first. With `G`, the gradient too, which is that of the curve between the

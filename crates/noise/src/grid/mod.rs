@@ -77,14 +77,19 @@ impl Raster {
     /// # Panics
     /// Unless there are one to four axes.
     pub fn new(field: impl Into<Field>, axes: Vec<Vec<f32>>) -> Self {
-        assert!((1..=4).contains(&axes.len()), "a grid has one to four axes");
-        let field = field.into();
-        let by_cells = match &field {
-            Field::Noise(noise) => by_cells(&Sum::new(noise.clone(), Combine::Plain, 1), &axes),
-            Field::Sum(sum) => by_cells(sum, &axes),
+        let mut raster = Raster::of_points(field.into(), axes);
+        raster.by_cells = match &raster.field {
+            Field::Noise(noise) => by_cells(&Sum::new(noise.clone(), Combine::Plain, 1), &raster.axes),
+            Field::Sum(sum) => by_cells(sum, &raster.axes),
             Field::Warp(_) => None,
         };
-        Raster { field, axes, by_cells }
+        raster
+    }
+
+    /// The field, to be evaluated point by point.
+    fn of_points(field: Field, axes: Vec<Vec<f32>>) -> Self {
+        assert!((1..=4).contains(&axes.len()), "a grid has one to four axes");
+        Raster { field, axes, by_cells: None }
     }
 
     /// The number of parts that can be evaluated by themselves: the length of the last axis (of one axis alone, 1).
@@ -115,8 +120,7 @@ impl Raster {
     /// # Panics
     /// When there are no such planes, or `values` has another length than they have points.
     pub fn fill_at(&self, level: Level, planes: Range<usize>, values: &mut [f32]) {
-        assert!(planes.end <= self.planes(), "there are so many planes");
-        assert_eq!(values.len(), planes.len() * self.plane_len(), "there is a value for each point of the planes");
+        self.assert_planes(&planes, values.len());
         if values.is_empty() {
             return;
         }
@@ -162,14 +166,21 @@ impl Raster {
         values: &mut [f32],
         mut gradient: [&mut [f32]; D],
     ) {
-        assert!(planes.end <= self.planes(), "there are so many planes");
         assert_eq!(self.axes.len(), D, "there is a derivative for each axis");
         simd::assert_lengths(&gradient, values.len());
-        assert_eq!(values.len(), planes.len() * self.plane_len(), "there is a value for each point of the planes");
+        self.assert_planes(&planes, values.len());
         self.for_each_row::<D>(planes, values.len(), |points, row| {
             let gradient = gradient.each_mut().map(|part| &mut part[row.clone()]);
             self.field.fill_with_gradient_at(level, points, &mut values[row], gradient);
         });
+    }
+
+    /// # Panics
+    /// When there are no such planes, or another number of values than they have points.
+    #[track_caller]
+    fn assert_planes(&self, planes: &Range<usize>, values: usize) {
+        assert!(planes.end <= self.planes(), "there are so many planes");
+        assert_eq!(values, planes.len() * self.plane_len(), "there is a value for each point of the planes");
     }
 
     /// The values point by point.
@@ -250,8 +261,7 @@ impl Noise {
         values: &mut [f32],
         gradient: [&mut [f32]; D],
     ) {
-        let raster = Raster::new(self.clone(), grid.axes());
-        raster.fill_with_gradient(0..raster.planes(), values, gradient);
+        fill_grid_with_gradient(self.clone().into(), grid, values, gradient);
     }
 }
 
@@ -283,8 +293,7 @@ impl Sum {
         values: &mut [f32],
         gradient: [&mut [f32]; D],
     ) {
-        let raster = Raster::new(self.clone(), grid.axes());
-        raster.fill_with_gradient(0..raster.planes(), values, gradient);
+        fill_grid_with_gradient(self.clone().into(), grid, values, gradient);
     }
 }
 
@@ -292,4 +301,14 @@ fn fill_grid_at<const D: usize>(field: Field, level: Level, grid: &Grid<D>, valu
     assert_eq!(values.len(), grid.len(), "there is a value for each point of the grid");
     let raster = Raster::new(field, grid.axes());
     raster.fill_at(level, 0..raster.planes(), values);
+}
+
+fn fill_grid_with_gradient<const D: usize>(
+    field: Field,
+    grid: &Grid<D>,
+    values: &mut [f32],
+    gradient: [&mut [f32]; D],
+) {
+    let raster = Raster::of_points(field, grid.axes());
+    raster.fill_with_gradient(0..raster.planes(), values, gradient);
 }

@@ -275,6 +275,19 @@ pub(crate) fn improved_at_points(level: Level, tables: &Tables, points: &[[f32; 
     }
 }
 
+/// The kernel of this path in the module of a level, at most that of the machine, if there is one.
+macro_rules! kernel {
+    ($level:expr, $of:ident, $module:ident::$name:ident) => {
+        match $level.min(machine_level()) {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => Some($of(avx2::$module::$name)),
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => Some($of(avx512::$module::$name)),
+            _ => None,
+        }
+    };
+}
+
 /// A function of a point in space, chosen when the noise or sum is made: the fastest way for one point.
 #[derive(Debug)]
 pub(crate) struct InSpace<T>(unsafe fn(&T, f32, f32, f32) -> f32);
@@ -311,31 +324,19 @@ impl<T> InSpace<T> {
 impl InSpace<Noise> {
     /// Improved noise without a period, with the instructions of a level, at most those of the machine, if there is a kernel for them.
     pub fn improved(level: Level) -> Option<Self> {
-        match level.min(machine_level()) {
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => Some(InSpace(avx2::single::improved)),
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => Some(InSpace(avx512::single::improved)),
-            _ => None,
-        }
+        kernel!(level, InSpace, single::improved)
     }
 }
 
 impl InSpace<Sum> {
     /// Its octaves, added or their absolute values added: as [`InSpace::improved`].
     pub fn improved_octaves(level: Level) -> Option<Self> {
-        match level.min(machine_level()) {
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => Some(InSpace(avx2::single::sum)),
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => Some(InSpace(avx512::single::sum)),
-            _ => None,
-        }
+        kernel!(level, InSpace, single::sum)
     }
 }
 
 /// So many points at once have a shorter way to their kernel, which would be a tenth of their time.
-pub(crate) const BATCH: usize = 64;
+pub(crate) const BATCH: usize = MOST_STEP;
 
 /// Improved noise without a period at a batch of points in space.
 #[derive(Debug, Clone, Copy)]
@@ -345,13 +346,7 @@ type Batch = [f32; BATCH];
 impl InBatch {
     /// By a kernel made by hand with the instructions of a level, at most those of the machine, if there is one for them.
     pub fn improved(level: Level) -> Option<Self> {
-        match level.min(machine_level()) {
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => Some(InBatch(avx2::improved::batch)),
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => Some(InBatch(avx512::improved::batch)),
-            _ => None,
-        }
+        kernel!(level, InBatch, improved::batch)
     }
 
     /// Writes the values.

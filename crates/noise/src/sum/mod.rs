@@ -68,10 +68,8 @@ impl Sum {
     pub fn new(noise: Noise, combine: Combine, octaves: u32) -> Self {
         let octaves = octaves.min(MOST_OCTAVES);
         let scales = Arc::new(Scales::default());
-        let in_space = InSpace::by(Sum::sum_in_space);
-        let kernel =
-            if combine.is_plain() && noise.has_kernel() { InSpace::improved_octaves(simd::level()) } else { None };
-        let in_space = kernel.unwrap_or(in_space);
+        let level = (combine.is_plain() && noise.has_kernel()).then(simd::level);
+        let in_space = level.and_then(InSpace::improved_octaves).unwrap_or(InSpace::by(Sum::sum_in_space));
         Sum { noise, combine, octaves, last: 1.0, lacunarity: 2.0, gain: 0.5, scales, in_space }.scaled()
     }
 

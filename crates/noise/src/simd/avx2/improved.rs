@@ -10,7 +10,7 @@ use std::arch::x86_64::*;
 
 use super::{F32x8, I32x8, chosen, corners};
 use crate::basis::Tables;
-use crate::basis::corners::{Corners, Curve};
+use crate::basis::corners::{Corners, Curve, lerp};
 use crate::number::{Dual, Integer, Real};
 use crate::simd::pipeline::{self, ALONE, Halves, Octave, PLAIN, Point, Sums};
 use crate::simd::{BATCH, Terms, Vector, triples};
@@ -192,7 +192,7 @@ fn hash(tables: &CornerTables, of_columns: &ColumnCodes, cells: &Cells, codes: &
 }
 
 /// What is done beside a blend.
-pub(super) trait Beside {
+trait Beside {
     /// Before this corner; returns the codes.
     fn before(&mut self, corner: usize, codes: I32x8) -> I32x8;
     /// After a part of the blend; returns it.
@@ -200,7 +200,7 @@ pub(super) trait Beside {
 }
 
 /// Nothing.
-pub(super) struct Nothing;
+struct Nothing;
 
 impl Beside for Nothing {
     #[inline(always)]
@@ -277,7 +277,7 @@ fn locate<const USE: u8>(codes: &Stage, octave: &Octave, point: Point<LANES>) ->
 
 /// The noise, from the choices of the corners' edges and the offset in the cell.
 #[inline(always)]
-pub(super) fn blend<B: Beside>(mut codes: I32x8, offset: [F32x8; 3], beside: &mut B) -> F32x8 {
+fn blend<B: Beside>(mut codes: I32x8, offset: [F32x8; 3], beside: &mut B) -> F32x8 {
     let [x, y, z] = Curve::quintic(&offset).at;
     let near = edge(&mut codes, 0, offset, x, beside);
     let low = lerp(y, beside.after(near), edge(&mut codes, 2, offset, x, beside));
@@ -306,11 +306,6 @@ fn corner(codes: I32x8, corner: usize, [x, y, z]: [F32x8; 3]) -> F32x8 {
     let y = if corner & 2 == 0 { y } else { one - y }.0;
     let z = _mm256_or_ps(if corner & 4 == 0 { z } else { one - z }.0, sign);
     F32x8(chosen(by_corner(codes)[corner].0, _mm256_xor_ps(x, y), y, _mm256_xor_ps(z, y)))
-}
-
-#[inline(always)]
-fn lerp(t: F32x8, a: F32x8, b: F32x8) -> F32x8 {
-    a + t * (b - a)
 }
 
 /// The codes of each corner, from all of them as [`corners::hash`] has them (where the highest bit is that of x).

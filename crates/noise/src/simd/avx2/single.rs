@@ -8,6 +8,7 @@ use std::arch::x86_64::*;
 
 use super::{F32x8, corners};
 use crate::basis::Tables;
+use crate::basis::corners::{lerp, quintic};
 use crate::noise::Noise;
 use crate::number::Real;
 use crate::simd::sse::F32x4;
@@ -102,23 +103,17 @@ pub(in crate::simd) fn noise<V: Octaves<N>, const N: usize>(tables: &CornerTable
     }
     let offset = position - position.floor();
     let [left, right] = offset.corners(codes);
-    let curve = quintic(offset, |numbers| V::first(numbers.first_chunk().expect("eight of sixteen")));
+    let curve = curve(offset, |numbers| V::first(numbers.first_chunk().expect("eight of sixteen")));
     let sides = lerp(curve.shuffled::<0b10_10_10_10>(), left, right);
     let edges = lerp(curve.shuffled::<0b01_01_01_01>(), sides, sides.shuffled::<0b11_10_11_10>());
     lerp(curve, edges, edges.shuffled::<0b01_01_01_01>())
 }
 
-/// `Curve::quintic`, with its constants from memory.
+/// The curve at each lane, with its coefficients from memory.
 #[inline(always)]
-pub(in crate::simd) fn quintic<R: Real>(t: R, load: impl Fn(&'static [f32; 16]) -> R) -> R {
+pub(in crate::simd) fn curve<R: Real>(offset: R, load: impl Fn(&'static [f32; 16]) -> R) -> R {
     let constants = constants();
-    let inner = t * load(&constants.six) - load(&constants.fifteen);
-    t * t * t * (t * inner + load(&constants.ten))
-}
-
-#[inline(always)]
-fn lerp<R: Real>(t: R, a: R, b: R) -> R {
-    a + t * (b - a)
+    quintic(offset, [load(&constants.six), load(&constants.fifteen), load(&constants.ten)])
 }
 
 /// What is read as whole vectors.

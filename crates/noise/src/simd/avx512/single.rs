@@ -3,13 +3,14 @@
 use std::arch::asm;
 use std::arch::x86_64::*;
 
-use super::{EDGE_X, EDGE_Y, EDGE_Z, F32x16};
+use super::{EDGE_X, EDGE_Y, EDGE_Z, F32x16, I32x16};
 use crate::basis::Tables;
+use crate::basis::corners::lerp;
 use crate::noise::Noise;
 use crate::number::Real;
 use crate::simd::avx2::F32x8;
 use crate::simd::avx2::corners::column;
-use crate::simd::avx2::single::{Cell, Octaves, noise, point, quintic};
+use crate::simd::avx2::single::{Cell, Octaves, curve, noise, point};
 use crate::simd::{Lanes, Vector};
 use crate::sum::Sum;
 
@@ -73,8 +74,8 @@ fn noises(tables: &Tables, frequencies: &[f32; 8], [x, y, z]: [f32; 3]) -> F32x8
         [dot(_mm512_srli_epi32::<8>(codes), x1, y, to_corner), dot(_mm512_srli_epi32::<24>(codes), x1, y1, to_corner)],
     );
     // (Of x and y, eight lanes each, one vector.)
-    let x_and_y = quintic(F32x16(_mm512_insertf32x8::<1>(x.0, _mm512_castps512_ps256(y.0))), F32x16::load);
-    let z = quintic(F32x8::from_register(_mm512_castps512_ps256(z.0)), |numbers| {
+    let x_and_y = curve(F32x16(_mm512_insertf32x8::<1>(x.0, _mm512_castps512_ps256(y.0))), F32x16::load);
+    let z = curve(F32x8::from_register(_mm512_castps512_ps256(z.0)), |numbers| {
         F32x8::load(numbers.first_chunk().expect("eight of sixteen"))
     });
     let x = F32x16(_mm512_shuffle_f32x4::<0b01_00_01_00>(x_and_y.0, x_and_y.0));
@@ -110,11 +111,6 @@ struct Edges {
     z: [f32; 16],
 }
 
-#[inline(always)]
-fn lerp<R: Real>(t: R, a: R, b: R) -> R {
-    a + t * (b - a)
-}
-
 /// The cells of sixteen coordinates.
 #[inline]
 #[target_feature(enable = "avx512f")]
@@ -132,41 +128,7 @@ fn hash(tables: &Tables, [x, y, z]: [__m512i; 3]) -> __m512i {
     let x = _mm512_add_epi8(x, _mm512_set1_epi32(0x01_00_01_00));
     let y = _mm512_add_epi8(y, _mm512_set1_epi32(0x01_01_00_00));
     let z = _mm512_add_epi8(z, _mm512_mask_blend_epi32(0xff00, _mm512_setzero_si512(), _mm512_set1_epi8(1)));
-    let permutation = Quarters::of(&tables.permutation.bytes);
-    let columns = _mm512_add_epi8(permutation.at(x), y);
-    let entries = _mm512_add_epi8(permutation.at(columns), z);
-    Quarters::of(&tables.edges.bytes).at(entries)
-}
-
-/// A table of bytes, the first and the third quarter in registers. (The others are read where they are used.)
-struct Quarters<'a> {
-    bytes: &'a [u8; 256],
-    even: [__m512i; 2],
-}
-
-impl<'a> Quarters<'a> {
-    #[inline]
-    #[target_feature(enable = "avx512f")]
-    fn of(bytes: &'a [u8; 256]) -> Self {
-        // SAFETY: there are four quarters.
-        let quarter = |i: usize| unsafe { _mm512_loadu_si512(bytes.as_ptr().add(64 * i).cast()) };
-        Quarters { bytes, even: [quarter(0), quarter(2)] }
-    }
-
-    /// The table's bytes at these bytes.
-    #[inline]
-    #[target_feature(enable = "avx512f,avx512bw,avx512vbmi")]
-    fn at(&self, index: __m512i) -> __m512i {
-        let half = |i: usize| {
-            let mut half = index;
-            // SAFETY: there are four quarters.
-            unsafe {
-                let odd = self.bytes.as_ptr().add(128 * i + 64);
-                asm!("vpermi2b {0}, {1}, zmmword ptr [{2}]", inout(zmm_reg) half, in(zmm_reg) self.even[i], in(reg) odd,
-                    options(pure, readonly, nostack, preserves_flags));
-            }
-            half
-        };
-        _mm512_mask_blend_epi8(_mm512_movepi8_mask(index), half(0), half(1))
-    }
+    let sides = I32x16(x).permuted(&tables.permutation.bytes);
+    let columns = I32x16(_mm512_add_epi8(sides.0, y)).permuted(&tables.permutation.bytes);
+    I32x16(_mm512_add_epi8(columns.0, z)).permuted(&tables.edges.bytes).0
 }
