@@ -10,7 +10,7 @@
 
 use crate::basis::Basis;
 use crate::math;
-use crate::number::Real;
+use crate::number::{Dual, Real};
 
 /// How fast, and to what, a noise fades.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,37 +38,62 @@ impl Fade {
         Fade { rate: rates[usize::from(absolute)][space], mean: if signed { 0.0 } else { means[space] } }
     }
 
-    /// The noise (or its absolute value) at the centre of a footprint, faded; as it is where the footprint is zero.
+    /// The noise (or its absolute value) at the centre of a footprint, faded; as it is where the footprint is zero. (Here and
+    /// below: with `G` its gradient too, for footprints that stay the same.)
     #[inline(always)]
-    pub fn apply<R: Real>(self, noise: R, footprint: R) -> R {
+    pub fn apply<R: Real, const D: usize, const G: bool>(self, mut noise: Dual<R, D>, footprint: R) -> Dual<R, D> {
         let lost = R::constant(1.0) - math::exp(footprint * footprint * R::constant(-self.rate));
-        noise + lost * (R::constant(self.mean) - noise)
+        noise.value = noise.value + lost * (R::constant(self.mean) - noise.value);
+        for axis in 0..if G { D } else { 0 } {
+            noise.gradient[axis] = noise.gradient[axis] - lost * noise.gradient[axis];
+        }
+        noise
     }
 
     /// [`Fade::apply`] for those who see no difference below [`FAINT`], and nothing but the mean from afar.
     #[inline(always)]
-    pub fn apply_alone<R: Real>(self, noise: R, footprint: R) -> R {
+    pub fn apply_alone<R: Real, const D: usize, const G: bool>(self, noise: Dual<R, D>, footprint: R) -> Dual<R, D> {
         let zero = R::constant(0.0);
         let seen = footprint - R::constant(FAINT);
-        let faded = self.apply(noise, R::select(seen.less(zero), zero, seen));
-        R::select(R::constant(FAR).less(footprint), R::constant(self.mean), faded)
+        let faded = self.apply::<R, D, G>(noise, R::select(seen.less(zero), zero, seen));
+        self.mean_from_afar::<R, D, G>(faded, footprint)
     }
 
-    /// [`Fade::apply`] for one of the parts of a footprint.
+    /// The noise over a footprint: from its value at the centre, and from the average of those at the centres of the parts.
     #[inline(always)]
-    pub fn apply_to_part<R: Real>(self, noise: R, footprint: R) -> R {
-        self.apply(noise, footprint * R::constant(1.0 / 3.0))
-    }
-
-    /// The noise over a footprint: from the whole, faded, and from the average of its parts.
-    #[inline(always)]
-    pub fn blend<R: Real>(self, whole: R, parts: R, footprint: R) -> R {
+    pub fn blend<R: Real, const D: usize, const G: bool>(
+        self,
+        centre: Dual<R, D>,
+        parts: Dual<R, D>,
+        footprint: R,
+    ) -> Dual<R, D> {
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let whole = self.apply::<R, D, G>(centre, footprint);
+        let parts = self.apply::<R, D, G>(parts, footprint * R::constant(1.0 / 3.0));
         let share = footprint * R::constant(1.0 / NEAR) - one;
         let share = R::select(share.less(zero), zero, R::select(one.less(share), one, share));
-        let blended = whole + share * (parts - whole);
-        let near = R::select(footprint.less(R::constant(NEAR)), whole, blended);
-        R::select(R::constant(FAR).less(footprint), R::constant(self.mean), near)
+        let near = footprint.less(R::constant(NEAR));
+        let mut blended = whole;
+        blended.value = R::select(near, whole.value, whole.value + share * (parts.value - whole.value));
+        for axis in 0..if G { D } else { 0 } {
+            let (whole, parts) = (whole.gradient[axis], parts.gradient[axis]);
+            blended.gradient[axis] = R::select(near, whole, whole + share * (parts - whole));
+        }
+        self.mean_from_afar::<R, D, G>(blended, footprint)
+    }
+
+    #[inline(always)]
+    fn mean_from_afar<R: Real, const D: usize, const G: bool>(
+        self,
+        mut noise: Dual<R, D>,
+        footprint: R,
+    ) -> Dual<R, D> {
+        let far = R::constant(FAR).less(footprint);
+        noise.value = R::select(far, R::constant(self.mean), noise.value);
+        for axis in 0..if G { D } else { 0 } {
+            noise.gradient[axis] = R::select(far, R::constant(0.0), noise.gradient[axis]);
+        }
+        noise
     }
 }
 
@@ -90,4 +115,14 @@ pub(crate) const fn parts(dimensions: usize) -> usize {
 #[inline(always)]
 pub(crate) fn part_centre(part: usize, axis: usize) -> f64 {
     ((part / parts(axis) % 3) as f64 - 1.0) / 3.0
+}
+
+/// Adds the noise at the centre of a part to the average of all parts.
+#[inline(always)]
+pub(crate) fn add_part<R: Real, const D: usize, const G: bool>(average: &mut Dual<R, D>, noise: Dual<R, D>) {
+    let share = R::constant(1.0 / parts(D) as f64);
+    average.value = average.value + share * noise.value;
+    for axis in 0..if G { D } else { 0 } {
+        average.gradient[axis] = average.gradient[axis] + share * noise.gradient[axis];
+    }
 }

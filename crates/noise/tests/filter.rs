@@ -94,6 +94,13 @@ fn filtered_sums_have_the_same_bits_at_every_level() {
                 assert_eq!(values, plane, "{basis:?} {combine:?} at {level:?}");
                 sum.fill_faded_at(level, [&x, &y, &z], &footprints, &mut values);
                 assert_eq!(values, faded, "{basis:?} {combine:?} at {level:?}, faded");
+                let [mut gx, mut gy, mut gz] = [(); 3].map(|()| vec![0.0; 99]);
+                let gradient = [&mut gx[..], &mut gy[..], &mut gz[..]];
+                sum.fill_filtered_with_gradient_at(level, [&x, &y, &z], &footprints, &mut values, gradient);
+                for i in 0..99 {
+                    let expected = sum.value_and_gradient_filtered([x[i], y[i], z[i]], footprints[i]);
+                    assert_eq!((values[i], [gx[i], gy[i], gz[i]]), expected, "{basis:?} {combine:?} at {level:?}, {i}");
+                }
             }
         }
     }

@@ -188,9 +188,8 @@ impl Sum {
     /// [`Sum::value_filtered`], and its exact derivative along each axis, where the footprint stays the same.
     #[inline]
     pub fn value_and_gradient_filtered<R: Real, const D: usize>(&self, point: [R; D], footprint: R) -> (R, [R; D]) {
-        let Dual { value, gradient } =
-            self.value_filtered(Dual::point(point), Dual { value: footprint, gradient: [R::constant(0.0); D] });
-        (value, gradient)
+        let sample = self.evaluate::<R, D, true>(point, Some((footprint, Judge::Parts)));
+        (sample.value, sample.gradient)
     }
 
     #[inline(always)]
@@ -207,26 +206,40 @@ impl Sum {
                 *coordinate = *coordinate * R::constant(frequency);
             }
             let mut noise = self.combine.fold::<R, D, G>(self.noise.octave::<R, D, G>(scaled, frequency));
-            if let Some((footprint, Judge::Point)) = footprint {
-                noise.value = fade.apply_alone(noise.value, footprint * R::constant(frequency));
-            }
-            if let Some((footprint, Judge::Parts)) = footprint {
+            if let Some((footprint, judge)) = footprint {
                 let footprint = footprint * R::constant(frequency);
-                let mut total = R::constant(0.0);
-                for part in 0..filter::parts(D) {
-                    let mut moved = scaled;
-                    for (axis, coordinate) in moved.iter_mut().enumerate() {
-                        *coordinate = *coordinate + footprint * R::constant(filter::part_centre(part, axis));
+                noise = match judge {
+                    Judge::Point => fade.apply_alone::<R, D, G>(noise, footprint),
+                    Judge::Parts => {
+                        let parts = self.average_of_parts::<R, D, G>(scaled, footprint, frequency);
+                        fade.blend::<R, D, G>(noise, parts, footprint)
                     }
-                    let noise = self.combine.fold::<R, D, false>(self.noise.octave::<R, D, false>(moved, frequency));
-                    total = total + fade.apply_to_part(noise.value, footprint);
-                }
-                let average = total * R::constant(1.0 / filter::parts(D) as f64);
-                noise.value = fade.blend(fade.apply(noise.value, footprint), average, footprint);
+                };
             }
             partial.add::<G>(self.combine, frequency, amplitude, noise);
         }
         partial.sum
+    }
+
+    /// The average of an octave's noises at the centres of the parts of a footprint around a point, both in cells.
+    #[inline(always)]
+    fn average_of_parts<R: Real, const D: usize, const G: bool>(
+        &self,
+        point: [R; D],
+        footprint: R,
+        frequency: f64,
+    ) -> Dual<R, D> {
+        let zero = R::constant(0.0);
+        let mut average = Dual { value: zero, gradient: [zero; D] };
+        for part in 0..filter::parts(D) {
+            let mut moved = point;
+            for (axis, coordinate) in moved.iter_mut().enumerate() {
+                *coordinate = *coordinate + footprint * R::constant(filter::part_centre(part, axis));
+            }
+            let noise = self.combine.fold::<R, D, G>(self.noise.octave::<R, D, G>(moved, frequency));
+            filter::add_part::<R, D, G>(&mut average, noise);
+        }
+        average
     }
 
     /// The values at many points: one slice of coordinates per axis (one to four), one slice for the values. The same
@@ -365,6 +378,37 @@ impl Sum {
         values: &mut [f32],
     ) {
         self.fill_by_octaves(level, &points, Some((footprints, Judge::Parts)), values, &mut []);
+    }
+
+    /// The values at many points, each with its footprint, and the exact derivatives along each axis: the same bits as
+    /// [`Sum::value_and_gradient_filtered`] in single precision.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn fill_filtered_with_gradient<const D: usize>(
+        &self,
+        points: [&[f32]; D],
+        footprints: &[f32],
+        values: &mut [f32],
+        gradient: [&mut [f32]; D],
+    ) {
+        self.fill_filtered_with_gradient_at(simd::level(), points, footprints, values, gradient);
+    }
+
+    /// [`Sum::fill_filtered_with_gradient`] with the instructions of a level, at most those of the machine. For tests and
+    /// measurements.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn fill_filtered_with_gradient_at<const D: usize>(
+        &self,
+        level: Level,
+        points: [&[f32]; D],
+        footprints: &[f32],
+        values: &mut [f32],
+        mut gradient: [&mut [f32]; D],
+    ) {
+        self.fill_by_octaves(level, &points, Some((footprints, Judge::Parts)), values, &mut gradient);
     }
 
     /// The values at many points, each with its footprint: the same bits as [`Sum::value_faded`] in single precision.

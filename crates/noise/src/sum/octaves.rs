@@ -69,16 +69,12 @@ impl Sum {
                 }
                 let octave = Octave { noise: &self.noise, frequency };
                 let points = scaled.each_ref().map(|axis| &axis[..count]);
-                let value = &mut noise.value[..count];
                 let far = |side: &f32| f64::from(*side) > FAR;
                 if footprints.is_some() && sides[..count].iter().all(far) {
                     // Nothing is left but the mean, whatever the noise is.
-                    value.fill(0.0);
-                } else if G {
-                    let mut slopes = noise.gradient.each_mut().map(|axis| &mut axis[..count]);
-                    octave.fill(level, &points, value, &mut slopes);
+                    noise.value[..count].fill(0.0);
                 } else {
-                    octave.fill(level, &points, value, &mut []);
+                    noise.fill::<G>(level, &octave, &points);
                 }
                 let near = |side: &f32| f64::from(*side) <= FAINT;
                 let filtered = match footprints {
@@ -86,7 +82,7 @@ impl Sum {
                     Some((_, Judge::Point)) if sides[..count].iter().all(near) => Filtered::Not,
                     Some((_, Judge::Point)) => Filtered::Alone(&sides),
                     Some((_, Judge::Parts)) => {
-                        averages = self.average_parts::<D>(level, &octave, fade, &sides[..count], &scaled);
+                        averages = self.average_parts::<D, G>(level, &octave, &sides[..count], &scaled);
                         Filtered::Parts(&sides, &averages)
                     }
                 };
@@ -105,20 +101,19 @@ impl Sum {
 impl Sum {
     /// The averages over footprints of these sides (in cells) around the points, from their parts; anything where all
     /// footprints are so small or so large that they are judged without.
-    fn average_parts<const D: usize>(
+    fn average_parts<const D: usize, const G: bool>(
         &self,
         level: Level,
         octave: &Octave,
-        fade: Fade,
         sides: &[f32],
         points: &[[f32; CHUNK]; D],
-    ) -> [f32; CHUNK] {
-        let mut averages = [0.0; CHUNK];
+    ) -> Samples<D> {
+        let mut averages = Samples::of(0.0);
         let judged_without = |side: &f32| f64::from(*side) < NEAR || f64::from(*side) > FAR;
         if sides.iter().all(judged_without) {
             return averages;
         }
-        let (mut moved, mut noise) = (*points, [0.0; CHUNK]);
+        let (mut moved, mut noise) = (*points, averages);
         let count = sides.len();
         for part in 0..filter::parts(D) {
             for (axis, (moved, points)) in moved.iter_mut().zip(points).enumerate() {
@@ -127,29 +122,30 @@ impl Sum {
                     *moved = point + side * centre;
                 }
             }
-            octave.fill(level, &moved.each_ref().map(|axis| &axis[..count]), &mut noise[..count], &mut []);
-            let (combine, noise, averages) = (self.combine, &noise[..count], &mut averages[..count]);
-            simd::run(level, AddPart { combine, fade, sides, noise, averages });
+            noise.fill::<G>(level, octave, &moved.each_ref().map(|axis| &axis[..count]));
+            let (combine, noise, averages) = (self.combine, &noise, &mut averages);
+            simd::run_wide(level, AddPart::<D, G> { count, combine, noise, averages });
         }
-        averages.map(|total| total * (1.0 / filter::parts(D) as f64) as f32)
+        averages
     }
 }
 
-/// Adds the parts of footprints.
-struct AddPart<'a> {
+/// Adds a part of the footprints of a chunk.
+struct AddPart<'a, const D: usize, const G: bool> {
+    count: usize,
     combine: Combine,
-    fade: Fade,
-    sides: &'a [f32],
-    noise: &'a [f32],
-    averages: &'a mut [f32],
+    noise: &'a Samples<D>,
+    averages: &'a mut Samples<D>,
 }
 
-impl Task for AddPart<'_> {
+impl<const D: usize, const G: bool> Wide for AddPart<'_, D, G> {
     #[inline(always)]
-    fn run(self) {
-        for ((average, &noise), &side) in self.averages.iter_mut().zip(self.noise).zip(self.sides) {
-            let noise = self.combine.fold::<f32, 0, false>(Dual { value: noise, gradient: [] });
-            *average += self.fade.apply_to_part(noise.value, side);
+    fn run<V: Vector<LANES>, const LANES: usize>(self) {
+        for vector in 0..self.count.div_ceil(LANES) {
+            let noise = self.combine.fold::<V, D, G>(self.noise.load::<V, LANES, G>(vector));
+            let mut average = self.averages.load::<V, LANES, G>(vector);
+            filter::add_part::<V, D, G>(&mut average, noise);
+            self.averages.store::<V, LANES, G>(vector, average);
         }
     }
 }
@@ -184,6 +180,17 @@ impl<const D: usize> Samples<D> {
         Samples { value: [value; CHUNK], gradient: [[0.0; CHUNK]; D] }
     }
 
+    /// The first ones: those of an octave at so many points.
+    fn fill<const G: bool>(&mut self, level: Level, octave: &Octave, points: &[&[f32]; D]) {
+        let count = points[0].len();
+        if G {
+            let mut gradient = self.gradient.each_mut().map(|axis| &mut axis[..count]);
+            octave.fill(level, points, &mut self.value[..count], &mut gradient);
+        } else {
+            octave.fill(level, points, &mut self.value[..count], &mut []);
+        }
+    }
+
     /// Those of one vector.
     #[inline(always)]
     fn load<V: Vector<LANES>, const LANES: usize, const G: bool>(&self, vector: usize) -> Dual<V, D> {
@@ -205,11 +212,11 @@ impl<const D: usize> Samples<D> {
 
 /// The sides of footprints in cells, and what their noise is judged by.
 #[derive(Clone, Copy)]
-enum Filtered<'a> {
+enum Filtered<'a, const D: usize> {
     Not,
     Alone(&'a [f32; CHUNK]),
     /// With the averages of the parts.
-    Parts(&'a [f32; CHUNK], &'a [f32; CHUNK]),
+    Parts(&'a [f32; CHUNK], &'a Samples<D>),
 }
 
 /// Adds an octave at the points of a chunk.
@@ -219,7 +226,7 @@ struct Add<'a, const D: usize, const G: bool> {
     frequency: f64,
     amplitude: f64,
     fade: Fade,
-    filtered: Filtered<'a>,
+    filtered: Filtered<'a, D>,
     noise: &'a Samples<D>,
     sum: &'a mut Samples<D>,
     /// What a multifractal sum multiplies the octave by.
@@ -233,14 +240,13 @@ impl<const D: usize, const G: bool> Wide for Add<'_, D, G> {
         for vector in 0..self.count.div_ceil(LANES) {
             let mut noise = self.combine.fold::<V, D, G>(self.noise.load::<V, LANES, G>(vector));
             let load = |numbers: &[f32; CHUNK]| V::load(&numbers.as_chunks().0[vector]);
-            match self.filtered {
-                Filtered::Not => {}
-                Filtered::Alone(sides) => noise.value = self.fade.apply_alone(noise.value, load(sides)),
+            noise = match self.filtered {
+                Filtered::Not => noise,
+                Filtered::Alone(sides) => self.fade.apply_alone::<V, D, G>(noise, load(sides)),
                 Filtered::Parts(sides, averages) => {
-                    let whole = self.fade.apply(noise.value, load(sides));
-                    noise.value = self.fade.blend(whole, load(averages), load(sides));
+                    self.fade.blend::<V, D, G>(noise, averages.load::<V, LANES, G>(vector), load(sides))
                 }
-            }
+            };
             let mut partial = Partial::<V, D>::new();
             partial.sum = self.sum.load::<V, LANES, G>(vector);
             if !self.combine.is_plain() {
