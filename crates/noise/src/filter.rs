@@ -83,11 +83,7 @@ impl Fade {
     }
 
     #[inline(always)]
-    fn mean_from_afar<R: Real, const D: usize, const G: bool>(
-        self,
-        mut noise: Dual<R, D>,
-        footprint: R,
-    ) -> Dual<R, D> {
+    fn mean_from_afar<R: Real, const D: usize, const G: bool>(self, mut noise: Dual<R, D>, footprint: R) -> Dual<R, D> {
         let far = R::constant(FAR).less(footprint);
         noise.value = R::select(far, R::constant(self.mean), noise.value);
         for axis in 0..if G { D } else { 0 } {

@@ -57,8 +57,10 @@
 //!
 //! Sums add octaves plainly, by their absolute value, or as multifractals ([`Combine`]), with any lacunarity and gain; the
 //! last octave may fade in ([`Sum::with_octaves`]), and [`Sum::fill_filtered`] fades what a sample's footprint cannot resolve.
-//! [`Noise::fill_with_gradient`] and [`Sum::fill_with_gradient`] give exact gradients with the values. [`Noise::fill_grid`] and
-//! [`Sum::fill_grid`] are made for uniform grids, a [`Raster`] for other grids and for several threads. A [`Warp`] displaces the points of one [`Field`] by another.
+//! [`Noise::fill_with_gradient`], [`Sum::fill_with_gradient`] and [`Sum::fill_filtered_with_gradient`] give exact gradients
+//! with the values. [`Noise::fill_grid`] and [`Sum::fill_grid`] are made for uniform grids (and have their likes for
+//! gradients and footprints), a [`Raster`] for other grids and for several threads. A [`Warp`] displaces the points of one
+//! [`Field`] by another.
 //!
 //! # Promises
 //!

@@ -126,6 +126,29 @@ fn gradients_on_a_grid_are_those_of_its_points() {
 }
 
 #[test]
+fn footprints_on_a_grid_are_those_of_its_points() {
+    let grid = Grid { origin: [-1.3, 0.2], step: [0.17, 0.31], count: [37, 5] };
+    for &basis in Basis::ALL {
+        for footprint in [0.0, 0.1, 0.7, 30.0] {
+            for (combine, octaves) in [(Combine::Plain, 1), (Combine::Absolute, 4), (Combine::Ridged, 3)] {
+                let noise = Noise::new(basis, 5);
+                let sum = if octaves == 1 { noise.into() } else { Sum::new(noise, combine, octaves) };
+                let mut filtered = vec![f32::MAX; grid.len()];
+                sum.fill_grid_filtered(&grid, footprint, &mut filtered);
+                let [mut values, mut x, mut y] = [(); 3].map(|_| vec![f32::MAX; grid.len()]);
+                sum.fill_grid_filtered_with_gradient(&grid, footprint, &mut values, [&mut x, &mut y]);
+                for i in 0..grid.len() {
+                    let point = [grid.coordinate(0, i % 37), grid.coordinate(1, i / 37)];
+                    let expected = sum.value_and_gradient_filtered(point, footprint);
+                    assert_eq!((values[i], [x[i], y[i]]), expected, "{sum:?} at {point:?} through {footprint}");
+                    assert_eq!(filtered[i], expected.0, "{sum:?} at {point:?} through {footprint}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 #[should_panic(expected = "there is a derivative for each axis")]
 fn gradients_have_as_many_parts_as_the_grid_has_axes() {
     let raster = Raster::new(Noise::new(Basis::Improved, 0), vec![vec![0.0, 1.0]; 2]);

@@ -144,9 +144,7 @@ impl Noise {
     /// Prints the value, or the values.
     pub fn run(self) -> Result<Outcome, Failure> {
         let evaluation = match (self.field()?, self.footprint) {
-            (Field::Noise(noise), Some(footprint)) => {
-                Evaluation::Filtered(Sum::new(noise, Combine::Plain, 1), footprint)
-            }
+            (Field::Noise(noise), Some(footprint)) => Evaluation::Filtered(noise.into(), footprint),
             (Field::Sum(sum), Some(footprint)) => Evaluation::Filtered(sum, footprint),
             (field, _) => Evaluation::Field(field),
         };

@@ -65,10 +65,18 @@ impl<const D: usize> Grid<D> {
 /// parts). All else has the bits of [`Field::fill`].
 #[derive(Debug, Clone)]
 pub struct Raster {
-    field: Field,
+    source: Source,
     axes: Vec<Vec<f32>>,
     /// The octaves prepared for an evaluation by cells, if each of them can be.
     by_cells: Option<(Combine, Vec<Octave>)>,
+}
+
+/// What is evaluated at the points of a grid.
+#[derive(Debug, Clone)]
+enum Source {
+    Field(Field),
+    /// A sum seen through footprints of this side.
+    Filtered(Sum, f32),
 }
 
 impl Raster {
@@ -77,19 +85,28 @@ impl Raster {
     /// # Panics
     /// Unless there are one to four axes.
     pub fn new(field: impl Into<Field>, axes: Vec<Vec<f32>>) -> Self {
-        let mut raster = Raster::of_points(field.into(), axes);
-        raster.by_cells = match &raster.field {
-            Field::Noise(noise) => by_cells(&Sum::new(noise.clone(), Combine::Plain, 1), &raster.axes),
-            Field::Sum(sum) => by_cells(sum, &raster.axes),
+        let field = field.into();
+        let by_cells = match &field {
+            Field::Noise(noise) => by_cells(&noise.clone().into(), &axes),
+            Field::Sum(sum) => by_cells(sum, &axes),
             Field::Warp(_) => None,
         };
-        raster
+        Raster { by_cells, ..Raster::of_points(Source::Field(field), axes) }
     }
 
-    /// The field, to be evaluated point by point.
-    fn of_points(field: Field, axes: Vec<Vec<f32>>) -> Self {
+    /// The sum (or noise) at every combination of these coordinates, as it looks through a sample of the side `footprint`:
+    /// point by point, with the bits of [`Sum::fill_filtered`] and [`Sum::fill_filtered_with_gradient`].
+    ///
+    /// # Panics
+    /// Unless there are one to four axes.
+    pub fn filtered(sum: impl Into<Sum>, axes: Vec<Vec<f32>>, footprint: f32) -> Self {
+        Raster::of_points(Source::Filtered(sum.into(), footprint), axes)
+    }
+
+    /// To be evaluated point by point.
+    fn of_points(source: Source, axes: Vec<Vec<f32>>) -> Self {
         assert!((1..=4).contains(&axes.len()), "a grid has one to four axes");
-        Raster { field, axes, by_cells: None }
+        Raster { source, axes, by_cells: None }
     }
 
     /// The number of parts that can be evaluated by themselves: the length of the last axis (of one axis alone, 1).
@@ -142,7 +159,7 @@ impl Raster {
     }
 
     /// The values in some planes, and the exact derivatives along each axis: point by point, with the bits of
-    /// [`Field::fill_with_gradient`].
+    /// [`Field::fill_with_gradient`] (or of [`Sum::fill_filtered_with_gradient`]).
     ///
     /// # Panics
     /// When there are no such planes or not D axes, or a slice has another length than they have points.
@@ -169,10 +186,25 @@ impl Raster {
         assert_eq!(self.axes.len(), D, "there is a derivative for each axis");
         simd::assert_lengths(&gradient, values.len());
         self.assert_planes(&planes, values.len());
+        let footprints = self.footprints();
         self.for_each_row::<D>(planes, values.len(), |points, row| {
             let gradient = gradient.each_mut().map(|part| &mut part[row.clone()]);
-            self.field.fill_with_gradient_at(level, points, &mut values[row], gradient);
+            let values = &mut values[row];
+            match &self.source {
+                Source::Field(field) => field.fill_with_gradient_at(level, points, values, gradient),
+                Source::Filtered(sum, _) => {
+                    sum.fill_filtered_with_gradient_at(level, points, &footprints, values, gradient);
+                }
+            }
         });
+    }
+
+    /// The footprints of the points of a row, if they have any.
+    fn footprints(&self) -> Vec<f32> {
+        match self.source {
+            Source::Field(_) => Vec::new(),
+            Source::Filtered(_, footprint) => vec![footprint; self.axes[0].len()],
+        }
     }
 
     /// # Panics
@@ -185,8 +217,10 @@ impl Raster {
 
     /// The values point by point.
     fn fill_points<const D: usize>(&self, level: Level, planes: Range<usize>, values: &mut [f32]) {
-        self.for_each_row::<D>(planes, values.len(), |points, row| {
-            self.field.fill_at(level, points, &mut values[row]);
+        let footprints = self.footprints();
+        self.for_each_row::<D>(planes, values.len(), |points, row| match &self.source {
+            Source::Field(field) => field.fill_at(level, points, &mut values[row]),
+            Source::Filtered(sum, _) => sum.fill_filtered_at(level, points, &footprints, &mut values[row]),
         });
     }
 
@@ -247,7 +281,7 @@ impl Noise {
     /// # Panics
     /// When `values` has another length than the grid.
     pub fn fill_grid_at<const D: usize>(&self, level: Level, grid: &Grid<D>, values: &mut [f32]) {
-        fill_grid_at(self.clone().into(), level, grid, values);
+        fill_all(&Raster::new(self.clone(), grid.axes()), level, grid, values);
     }
 
     /// The values on a grid, x first, then y, and so on, and the exact derivatives along each axis: point by point, with the bits of
@@ -261,7 +295,8 @@ impl Noise {
         values: &mut [f32],
         gradient: [&mut [f32]; D],
     ) {
-        fill_grid_with_gradient(self.clone().into(), grid, values, gradient);
+        let raster = Raster::of_points(Source::Field(self.clone().into()), grid.axes());
+        raster.fill_with_gradient(0..raster.planes(), values, gradient);
     }
 }
 
@@ -279,7 +314,7 @@ impl Sum {
     /// # Panics
     /// When `values` has another length than the grid.
     pub fn fill_grid_at<const D: usize>(&self, level: Level, grid: &Grid<D>, values: &mut [f32]) {
-        fill_grid_at(self.clone().into(), level, grid, values);
+        fill_all(&Raster::new(self.clone(), grid.axes()), level, grid, values);
     }
 
     /// The values on a grid, x first, then y, and so on, and the exact derivatives along each axis: point by point, with the bits of
@@ -293,22 +328,38 @@ impl Sum {
         values: &mut [f32],
         gradient: [&mut [f32]; D],
     ) {
-        fill_grid_with_gradient(self.clone().into(), grid, values, gradient);
+        let raster = Raster::of_points(Source::Field(self.clone().into()), grid.axes());
+        raster.fill_with_gradient(0..raster.planes(), values, gradient);
+    }
+
+    /// The sums on a grid as they look through samples of the side `footprint`, x first, then y, and so on: as
+    /// [`Raster::filtered`] says.
+    ///
+    /// # Panics
+    /// When `values` has another length than the grid.
+    pub fn fill_grid_filtered<const D: usize>(&self, grid: &Grid<D>, footprint: f32, values: &mut [f32]) {
+        fill_all(&Raster::filtered(self.clone(), grid.axes(), footprint), simd::level(), grid, values);
+    }
+
+    /// [`Sum::fill_grid_filtered`], and the exact derivatives along each axis.
+    ///
+    /// # Panics
+    /// When a slice has another length than the grid.
+    pub fn fill_grid_filtered_with_gradient<const D: usize>(
+        &self,
+        grid: &Grid<D>,
+        footprint: f32,
+        values: &mut [f32],
+        gradient: [&mut [f32]; D],
+    ) {
+        let raster = Raster::filtered(self.clone(), grid.axes(), footprint);
+        raster.fill_with_gradient(0..raster.planes(), values, gradient);
     }
 }
 
-fn fill_grid_at<const D: usize>(field: Field, level: Level, grid: &Grid<D>, values: &mut [f32]) {
+/// The values in all planes of the raster of a grid.
+#[track_caller]
+fn fill_all<const D: usize>(raster: &Raster, level: Level, grid: &Grid<D>, values: &mut [f32]) {
     assert_eq!(values.len(), grid.len(), "there is a value for each point of the grid");
-    let raster = Raster::new(field, grid.axes());
     raster.fill_at(level, 0..raster.planes(), values);
-}
-
-fn fill_grid_with_gradient<const D: usize>(
-    field: Field,
-    grid: &Grid<D>,
-    values: &mut [f32],
-    gradient: [&mut [f32]; D],
-) {
-    let raster = Raster::of_points(field, grid.axes());
-    raster.fill_with_gradient(0..raster.planes(), values, gradient);
 }

@@ -63,6 +63,13 @@ enum Judge {
     Point,
 }
 
+impl From<Noise> for Sum {
+    /// One octave, which is the noise itself.
+    fn from(noise: Noise) -> Sum {
+        Sum::new(noise, Combine::Plain, 1)
+    }
+}
+
 impl Sum {
     /// A sum of so many octaves (at most 1024), of lacunarity 2 and gain ½; of none it is zero.
     pub fn new(noise: Noise, combine: Combine, octaves: u32) -> Self {
