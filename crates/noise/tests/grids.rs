@@ -3,17 +3,24 @@
 use jaspe_noise::simd::Level;
 use jaspe_noise::{Basis, Combine, Field, Grid, Noise, Raster, Sum, Warp};
 
+/// A point of a grid.
+fn point_of<const D: usize>(grid: &Grid<D>, index: usize) -> [f32; D] {
+    let mut rest = index;
+    std::array::from_fn(|axis| {
+        let at = rest % grid.count[axis];
+        rest /= grid.count[axis];
+        grid.coordinate(axis, at)
+    })
+}
+
+/// The coordinates along an axis of a grid.
+fn along<const D: usize>(grid: &Grid<D>, axis: usize) -> Vec<f32> {
+    (0..grid.count[axis]).map(|index| grid.coordinate(axis, index)).collect()
+}
+
 /// The sums on a grid, point by point.
 fn point_by_point<const D: usize>(sum: &Sum, grid: &Grid<D>) -> Vec<f32> {
-    let point = |index: usize| -> [f32; D] {
-        let mut rest = index;
-        std::array::from_fn(|axis| {
-            let at = rest % grid.count[axis];
-            rest /= grid.count[axis];
-            grid.coordinate(axis, at)
-        })
-    };
-    (0..grid.len()).map(|index| sum.value(point(index))).collect()
+    (0..grid.len()).map(|index| sum.value(point_of(grid, index))).collect()
 }
 
 /// Holds a grid to the evaluation point by point, and every level to the scalar one.
@@ -59,14 +66,20 @@ fn grids_of_any_kind_have_values() {
     let sum = Sum::new(Noise::new(Basis::Improved, 0), Combine::Plain, 2);
     for origin in [3e7, -1e20, f32::MAX, f32::NAN, f32::INFINITY] {
         check(&sum, &Grid { origin: [0.0, origin], step: [0.1, 0.1], count: [20, 3] }, 4e-6);
-        check(&sum, &Grid { origin: [origin, 0.0, 0.3], step: [0.1, 0.1, 0.2], count: [20, 3, 2] }, 4e-6);
+        let grid = Grid { origin: [origin, 0.0, 0.3], step: [0.1, 0.1, 0.2], count: [20, 3, 2] };
+        check(&sum, &grid, 4e-6);
+        check_gradient(&sum, &grid, 4e-6);
     }
     check(&sum, &Grid { origin: [0.0; 4], step: [0.3; 4], count: [5, 3, 4, 2] }, 0.0);
     check(&sum, &Grid { origin: [0.0; 2], step: [f32::NAN, 0.1], count: [3, 2] }, 0.0);
-    sum.fill_grid(&Grid { origin: [0.0; 2], step: [0.1; 2], count: [0, 7] }, &mut []);
-    assert!(Grid { origin: [0.0; 2], step: [0.1; 2], count: [0, 7] }.is_empty());
+    let empty = Grid { origin: [0.0; 2], step: [0.1; 2], count: [0, 7] };
+    sum.fill_grid(&empty, &mut []);
+    sum.fill_grid_with_gradient(&empty, &mut [], [&mut [], &mut []]);
+    sum.fill_grid_filtered(&empty, 0.5, &mut []);
+    assert!(empty.is_empty());
     let none = Sum::new(Noise::new(Basis::Improved, 0), Combine::Plain, 0);
     check(&none, &Grid { origin: [0.0; 2], step: [0.1; 2], count: [9, 7] }, 0.0);
+    check_gradient(&none, &Grid { origin: [0.0; 2], step: [0.1; 2], count: [9, 7] }, 0.0);
 }
 
 #[test]
@@ -100,29 +113,58 @@ fn parts_of_a_grid_are_the_whole() {
     }
 }
 
-#[test]
-fn gradients_on_a_grid_are_those_of_its_points() {
-    let grid = Grid { origin: [-1.3, 0.2, 5.0], step: [0.17, 0.31, 0.9], count: [37, 5, 3] };
-    let points: Vec<[f32; 3]> = (0..grid.len())
-        .map(|i| [i % 37, i / 37 % 5, i / 185].into_iter().enumerate().map(|(axis, at)| grid.coordinate(axis, at)))
-        .map(|point| point.collect::<Vec<f32>>().try_into().unwrap())
-        .collect();
-    for &basis in Basis::ALL {
-        let noise = Noise::new(basis, 5);
-        let sum = Sum::new(noise.clone(), Combine::Absolute, 3);
-        for field in [Field::from(noise.clone()), Field::from(sum.clone())] {
-            let mut values = vec![f32::MAX; grid.len()];
-            let [mut x, mut y, mut z] = [(); 3].map(|_| vec![f32::MAX; grid.len()]);
-            match &field {
-                Field::Sum(sum) => sum.fill_grid_with_gradient(&grid, &mut values, [&mut x, &mut y, &mut z]),
-                _ => noise.fill_grid_with_gradient(&grid, &mut values, [&mut x, &mut y, &mut z]),
-            }
-            for (i, &point) in points.iter().enumerate() {
-                let (value, gradient) = field.value_and_gradient(point);
-                assert_eq!((values[i], [x[i], y[i], z[i]]), (value, gradient), "{field:?} at {point:?}");
+/// Holds the gradients of a grid to those of its points, and every level to the scalar one; the values are those without.
+fn check_gradient<const D: usize>(sum: &Sum, grid: &Grid<D>, bound: f32) {
+    let raster = Raster::new(sum.clone(), (0..D).map(|axis| along(grid, axis)).collect());
+    let all = 0..raster.planes();
+    let mut alone = vec![f32::MAX; grid.len()];
+    raster.fill(all.clone(), &mut alone);
+    let bits = |numbers: &[f32]| numbers.iter().map(|n| if n.is_nan() { 0 } else { n.to_bits() }).collect::<Vec<_>>();
+    let mut reference = None;
+    for level in Level::ALL {
+        let mut outputs = vec![vec![f32::MAX; grid.len()]; D + 1];
+        let (values, gradient) = outputs.split_first_mut().unwrap();
+        let mut parts = gradient.iter_mut();
+        let gradient: [&mut [f32]; D] = std::array::from_fn(|_| &mut parts.next().unwrap()[..]);
+        raster.fill_with_gradient_at(level, all.clone(), values, gradient);
+        assert!(bits(values) == bits(&alone), "{sum:?} on {grid:?} at {level:?}");
+        let outputs_here = bits(&outputs.concat());
+        assert!(&outputs_here == reference.get_or_insert(outputs_here.clone()), "{sum:?} on {grid:?} at {level:?}");
+        for point in 0..grid.len() {
+            let (_, expected) = sum.value_and_gradient(point_of(grid, point));
+            for (slopes, expected) in outputs[1..].iter().zip(expected) {
+                let slope = slopes[point];
+                let same = slope.is_nan() && expected.is_nan() || (slope - expected).abs() <= bound;
+                assert!(same, "{sum:?} on {grid:?}, point {point}: {slope}, {expected}");
             }
         }
     }
+}
+
+#[test]
+fn gradients_on_a_grid_are_those_of_its_points() {
+    for &basis in Basis::ALL {
+        for &combine in Combine::ALL {
+            for period in [[0; 3], [3, 0, 7]] {
+                let Ok(noise) = Noise::new(basis, 5).with_period(period) else { continue };
+                let sum = Sum::new(noise, combine, 3);
+                let by_cells = matches!(basis, Basis::Improved | Basis::Classic | Basis::Lattice | Basis::Value);
+                let several = if matches!(combine, Combine::Plain | Combine::Absolute) { 3.0 } else { 30.0 };
+                let bound = if by_cells { 2e-6 * several } else { 0.0 };
+                check_gradient(
+                    &sum,
+                    &Grid { origin: [-1.31, 2.03, 25.1], step: [0.05, 0.1, 0.22], count: [41, 23, 9] },
+                    bound,
+                );
+                check_gradient(&sum, &Grid { origin: [-7.73, -3.91], step: [0.2, 0.24], count: [67, 18] }, bound);
+                check_gradient(&sum, &Grid { origin: [-7.73], step: [0.013], count: [130] }, bound);
+                // Too wide for cells.
+                check_gradient(&sum, &Grid { origin: [0.5, 0.5], step: [0.7, 0.1], count: [19, 7] }, 0.0);
+            }
+        }
+    }
+    let four = Grid { origin: [0.0; 4], step: [0.3; 4], count: [5, 3, 4, 2] };
+    check_gradient(&Noise::new(Basis::Improved, 0).into(), &four, 0.0);
 }
 
 #[test]
@@ -170,6 +212,14 @@ fn large_grids_which_pass_the_caches_by_are_the_same() {
                 assert!(part == values, "{level:?}, rows from {}", 7 * rows);
             }
         }
+    }
+    let [mut whole, mut x, mut y] = [(); 3].map(|_| vec![f32::MAX; width * height]);
+    raster.fill_with_gradient(0..height, &mut whole, [&mut x, &mut y]);
+    let [mut part, mut part_x, mut part_y] = [(); 3].map(|_| vec![f32::MAX; 7 * width]);
+    for row in (0..height).step_by(91) {
+        raster.fill_with_gradient(row..row + 7, &mut part, [&mut part_x, &mut part_y]);
+        let at = row * width..(row + 7) * width;
+        assert!(part == whole[at.clone()] && part_x == x[at.clone()] && part_y == y[at], "rows from {row}");
     }
 }
 

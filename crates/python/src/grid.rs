@@ -1,5 +1,7 @@
 //! `jaspe.noise.Grid`: points that are every combination of coordinates along each axis.
 
+use std::ops::Range;
+
 use jaspe_noise::{Field, Raster};
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods as _};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -17,7 +19,8 @@ const PIECE: usize = 1 << 16;
 /// `Grid(x, y, z)` holds the points `(x[i], y[j], z[k])`; what is evaluated there has the shape `(len(z), len(y), len(x))`: rows
 /// along x, as pictures have them. One axis to four. A noise on a grid needs no array of points, and takes a fraction of the time
 /// where the grid is finer than the cells of the noise (there it may differ from the noise at `points()` by rounding, by 2e-6 times the sum
-/// of the octaves' amplitudes at most, by ten times that for "ridged" and "hybrid").
+/// of the octaves' amplitudes at most, by ten times that for "ridged" and "hybrid"; gradients likewise, by 2e-6 times the sum of amplitudes
+/// times frequencies).
 ///
 /// - `axes`: one array of coordinates for each axis.
 #[pyclass(frozen, module = "jaspe.noise")]
@@ -101,25 +104,46 @@ impl Grid {
         self.axes.iter().rev().map(Vec::len).collect()
     }
 
-    /// The values of a field on the grid: on all cores and without the interpreter's lock; Ctrl-C ends it.
-    pub fn evaluate<'py>(&self, py: Python<'py>, field: Field) -> PyResult<Bound<'py, PyAny>> {
-        let values: Bound<'py, PyArrayDyn<f32>> = points::array(py, &self.lengths())?;
+    /// The values of a field on the grid, and with `gradient` the derivatives along each axis: on all cores and without the
+    /// interpreter's lock; Ctrl-C ends it.
+    pub fn evaluate<'py>(&self, py: Python<'py>, field: Field, gradient: bool) -> PyResult<Bound<'py, PyAny>> {
+        let lengths = self.lengths();
+        let values: Bound<'py, PyArrayDyn<f32>> = points::array(py, &lengths)?;
+        let width = if gradient { self.dimensions() } else { 0 };
+        let slopes: Bound<'py, PyArrayDyn<f32>> = points::array(py, &[&lengths[..], &[width]].concat())?;
         {
-            let mut values = values.readwrite();
-            let values = values.as_slice_mut()?;
+            let (mut values, mut slopes) = (values.readwrite(), slopes.readwrite());
+            let (values, slopes) = (values.as_slice_mut()?, slopes.as_slice_mut()?);
             if !values.is_empty() {
                 let raster = Raster::new(field, self.axes.clone());
                 let plane = raster.plane_len();
                 let planes = PIECE.div_ceil(plane);
                 let count = values.len();
-                let pieces = values.chunks_mut(planes * plane).enumerate().collect();
-                points::spread(py, pieces, count, |(piece, values): (usize, &mut [f32])| {
+                let mut slopes = slopes.chunks_mut((planes * plane * width).max(1));
+                let pieces = values.chunks_mut(planes * plane).enumerate();
+                let pieces = pieces.map(|(piece, values)| {
                     let first = piece * planes;
-                    raster.fill(first..first + values.len() / plane, values);
+                    (first..first + values.len() / plane, values, slopes.next().unwrap_or_default())
+                });
+                points::spread(py, pieces.collect(), count, |(planes, values, slopes)| match width {
+                    0 => raster.fill(planes, values),
+                    1 => fill_with_gradient::<1>(&raster, planes, values, slopes),
+                    2 => fill_with_gradient::<2>(&raster, planes, values, slopes),
+                    3 => fill_with_gradient::<3>(&raster, planes, values, slopes),
+                    _ => fill_with_gradient::<4>(&raster, planes, values, slopes),
                 })?;
             }
         }
-        Ok(values.into_any())
+        if gradient { Ok((values, slopes).into_pyobject(py)?.into_any()) } else { Ok(values.into_any()) }
+    }
+}
+
+/// The values in some planes, and the derivatives along all axes, point by point.
+fn fill_with_gradient<const D: usize>(raster: &Raster, planes: Range<usize>, values: &mut [f32], slopes: &mut [f32]) {
+    let mut columns: [Vec<f32>; D] = std::array::from_fn(|_| vec![0.0; values.len()]);
+    raster.fill_with_gradient(planes, values, columns.each_mut().map(Vec::as_mut_slice));
+    for (i, slope) in slopes.as_chunks_mut().0.iter_mut().enumerate() {
+        *slope = columns.each_ref().map(|column| column[i]);
     }
 }
 

@@ -36,9 +36,8 @@ pub fn noise<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = points.py();
     let place = match points.cast::<Grid>() {
-        // (Exact gradients are worked out point by point.)
-        Ok(grid) if !gradient => Place::Grid(grid.get()),
-        _ => Place::Points(Points::new(points, &[1, 2, 3, 4])?),
+        Ok(grid) => Place::Grid(grid.get()),
+        Err(_) => Place::Points(Points::new(points, &[1, 2, 3, 4])?),
     };
     let recipe = Recipe {
         basis: word("basis", basis, Basis::from_name(basis), Basis::ALL.iter().map(|basis| basis.name()))?,
@@ -65,7 +64,7 @@ pub fn noise<'py>(
     match place {
         Place::Points(Points::Single(points)) => over_dimensions(&points, &field, gradient),
         Place::Points(Points::Double(points)) => over_dimensions(&points, &field, gradient),
-        Place::Grid(grid) => grid.evaluate(py, field),
+        Place::Grid(grid) => grid.evaluate(py, field, gradient),
     }
 }
 

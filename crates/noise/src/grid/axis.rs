@@ -1,5 +1,6 @@
 //! One axis of a grid as an octave sees it: the lattice points that it touches, and where each point lies between them.
 
+use crate::basis::corners::Curve;
 use crate::basis::{Basis, wrap};
 use crate::noise::Noise;
 
@@ -16,8 +17,9 @@ pub(super) struct Axis {
     /// The offset from the lower lattice point, and from the upper one.
     pub from_low: Vec<f32>,
     pub from_high: Vec<f32>,
-    /// The curve from 0 to 1 between the two.
+    /// The curve from 0 to 1 between the two, and its slope.
     pub curve: Vec<f32>,
+    pub slope: Vec<f32>,
 }
 
 impl Axis {
@@ -39,18 +41,23 @@ impl Axis {
         let mut cell: Vec<usize> = cells.iter().map(|cell| (cell - first) as usize).collect();
         let from_low: Vec<f32> = scaled.iter().zip(&cells).map(|(coordinate, cell)| coordinate - cell).collect();
         let from_high = from_low.iter().map(|offset| offset - 1.0).collect();
-        let curve = from_low.iter().map(|&t| match noise.basis() {
-            Basis::Improved | Basis::Value => t * t * t * (t * (t * 6.0 - 15.0) + 10.0),
-            _ => t * t * (3.0 - 2.0 * t),
-        });
-        let curve = curve.collect();
+        let (curve, slope) = from_low.iter().map(|&offset| curve(noise.basis(), offset)).unzip();
         let padded = cell.len().next_multiple_of(PADDING);
         let last_cell = *cell.last()?;
         cell.resize(padded, last_cell);
-        let mut axis = Axis { lattice, cell, from_low, from_high, curve };
-        for numbers in [&mut axis.from_low, &mut axis.from_high, &mut axis.curve] {
+        let mut axis = Axis { lattice, cell, from_low, from_high, curve, slope };
+        for numbers in [&mut axis.from_low, &mut axis.from_high, &mut axis.curve, &mut axis.slope] {
             numbers.resize(padded, 0.0);
         }
         Some(axis)
     }
+}
+
+/// The curve of a noise at an offset, and its slope.
+fn curve(basis: Basis, offset: f32) -> (f32, f32) {
+    let Curve { at: [at], slope: [slope] } = match basis {
+        Basis::Improved | Basis::Value => Curve::quintic(&[offset]),
+        _ => Curve::cubic(&[offset]),
+    };
+    (at, slope)
 }

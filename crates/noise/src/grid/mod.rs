@@ -62,7 +62,9 @@ impl<const D: usize> Grid<D> {
 /// Sums of improved, classic, lattice and value noise in up to three dimensions, on axes that rise from point to point by less than a
 /// cell of every octave, are evaluated by cells: within 2e-6 times the sum of the amplitudes of [`Field::fill`] (multifractals: ten times
 /// that), from which they differ by rounding (the bits are the same with every set of instructions, and in whatever
-/// parts). All else has the bits of [`Field::fill`].
+/// parts). Derivatives likewise: within 2e-6 times the sum of amplitudes times frequencies (multifractals: ten times that) of
+/// [`Field::fill_with_gradient`], but for kinks, where a value within rounding of zero may fold to the other side. All else
+/// has the bits of [`Field::fill`] and [`Field::fill_with_gradient`].
 #[derive(Debug, Clone)]
 pub struct Raster {
     source: Source,
@@ -141,25 +143,34 @@ impl Raster {
         if values.is_empty() {
             return;
         }
-        let Some((combine, octaves)) = &self.by_cells else {
-            return match self.axes.len() {
-                1 => self.fill_points::<1>(level, planes, values),
-                2 => self.fill_points::<2>(level, planes, values),
-                3 => self.fill_points::<3>(level, planes, values),
-                _ => self.fill_points::<4>(level, planes, values),
-            };
-        };
+        match (&self.by_cells, self.axes.len()) {
+            (Some(_), _) => self.fill_by_cells(level, planes, values, []),
+            (None, 1) => self.fill_points::<1>(level, planes, values),
+            (None, 2) => self.fill_points::<2>(level, planes, values),
+            (None, 3) => self.fill_points::<3>(level, planes, values),
+            (None, _) => self.fill_points::<4>(level, planes, values),
+        }
+    }
+
+    /// The values, and the derivatives along the first axes, by cells.
+    fn fill_by_cells<const D: usize>(
+        &self,
+        level: Level,
+        planes: Range<usize>,
+        values: &mut [f32],
+        gradient: [&mut [f32]; D],
+    ) {
+        let (combine, octaves) = self.by_cells.as_ref().expect("it was found to be possible");
         let rows = match self.axes.len() {
             1 => [0..1, 0..1],
             2 => [planes, 0..1],
             _ => [0..self.axes[1].len(), planes],
         };
         let width = self.axes[0].len();
-        simd::run_wide(level, Rows { combine: *combine, octaves, width, rows, values });
+        simd::run_wide(level, Rows { combine: *combine, octaves, width, rows, values, gradient });
     }
 
-    /// The values in some planes, and the exact derivatives along each axis: point by point, with the bits of
-    /// [`Field::fill_with_gradient`] (or of [`Sum::fill_filtered_with_gradient`]).
+    /// The values in some planes, with the bits of [`Raster::fill`], and the exact derivatives along each axis.
     ///
     /// # Panics
     /// When there are no such planes or not D axes, or a slice has another length than they have points.
@@ -186,6 +197,15 @@ impl Raster {
         assert_eq!(self.axes.len(), D, "there is a derivative for each axis");
         simd::assert_lengths(&gradient, values.len());
         self.assert_planes(&planes, values.len());
+        if values.is_empty() {
+            return;
+        }
+        match (&self.by_cells, &mut gradient[..]) {
+            (Some(_), [x]) => return self.fill_by_cells(level, planes, values, [x]),
+            (Some(_), [x, y]) => return self.fill_by_cells(level, planes, values, [x, y]),
+            (Some(_), [x, y, z]) => return self.fill_by_cells(level, planes, values, [x, y, z]),
+            _ => {}
+        }
         let footprints = self.footprints();
         self.for_each_row::<D>(planes, values.len(), |points, row| {
             let gradient = gradient.each_mut().map(|part| &mut part[row.clone()]);
@@ -284,8 +304,7 @@ impl Noise {
         fill_all(&Raster::new(self.clone(), grid.axes()), level, grid, values);
     }
 
-    /// The values on a grid, x first, then y, and so on, and the exact derivatives along each axis: point by point, with the bits of
-    /// [`Noise::fill_with_gradient`].
+    /// [`Noise::fill_grid`], and the exact derivatives along each axis.
     ///
     /// # Panics
     /// When a slice has another length than the grid.
@@ -295,7 +314,7 @@ impl Noise {
         values: &mut [f32],
         gradient: [&mut [f32]; D],
     ) {
-        let raster = Raster::of_points(Source::Field(self.clone().into()), grid.axes());
+        let raster = Raster::new(self.clone(), grid.axes());
         raster.fill_with_gradient(0..raster.planes(), values, gradient);
     }
 }
@@ -317,8 +336,7 @@ impl Sum {
         fill_all(&Raster::new(self.clone(), grid.axes()), level, grid, values);
     }
 
-    /// The values on a grid, x first, then y, and so on, and the exact derivatives along each axis: point by point, with the bits of
-    /// [`Sum::fill_with_gradient`].
+    /// [`Sum::fill_grid`], and the exact derivatives along each axis.
     ///
     /// # Panics
     /// When a slice has another length than the grid.
@@ -328,7 +346,7 @@ impl Sum {
         values: &mut [f32],
         gradient: [&mut [f32]; D],
     ) {
-        let raster = Raster::of_points(Source::Field(self.clone().into()), grid.axes());
+        let raster = Raster::new(self.clone(), grid.axes());
         raster.fill_with_gradient(0..raster.planes(), values, gradient);
     }
 

@@ -5,10 +5,13 @@
 //! f − 1 and the curve u, a row of lattice points contributes P + Q · (offset along y), where
 //! P = lerp(u, c₀ + bx₀ f, c₁ + bx₁ (f − 1)) and Q = lerp(u, by₀, by₁). A point between two such rows, with the offsets g
 //! and g − 1 and the curve v, then is (1 − v) P₀ + (1 − v) g Q₀ + v P₁ + v (g − 1) Q₁.
+//!
+//! The derivative along x is that of P and Q, the one along y that of the four factors, and the one along z that of c, bx and by.
 
 use std::ops::Range;
 
 use super::axis::{Axis, PADDING};
+use crate::basis::corners::lerp;
 use crate::basis::{Basis, Tables, hash};
 use crate::noise::Noise;
 use crate::number::{Dual, Integer, Real};
@@ -25,8 +28,8 @@ pub(super) struct Octave {
     pub axes: [Axis; 3],
 }
 
-/// A sum on a grid: work for vectors of any width.
-pub(super) struct Rows<'a> {
+/// A sum on a grid, with its derivatives along the first `D` axes: work for vectors of any width.
+pub(super) struct Rows<'a, const D: usize> {
     pub combine: Combine,
     pub octaves: &'a [Octave],
     /// The number of points along x.
@@ -34,6 +37,7 @@ pub(super) struct Rows<'a> {
     /// Which points along y and z.
     pub rows: [Range<usize>; 2],
     pub values: &'a mut [f32],
+    pub gradient: [&'a mut [f32]; D],
 }
 
 /// So many rows of points are evaluated side by side, if they lie in the same cells.
@@ -42,17 +46,13 @@ const SIDE_BY_SIDE: usize = 4;
 /// Grids of so many bytes do not stay in the caches, and are written past them.
 const LARGE: usize = 16 << 20;
 
-impl Wide for Rows<'_> {
+impl<const D: usize> Wide for Rows<'_, D> {
     #[inline(always)]
     fn run<V: Vector<LANES>, const LANES: usize>(self) {
         let (width, [rows, planes]) = (self.width, self.rows);
-        let (mut near, mut away) = (self.values, None);
-        if size_of_val(near) > LARGE {
-            away = Some(Away::to(near));
-            near = &mut [];
-        }
-        let mut buffer = vec![0.0; if away.is_some() { SIDE_BY_SIDE * width } else { 0 }];
-        let mut states: Vec<State<V, LANES>> =
+        let mut values = Output::to(self.values, width);
+        let mut gradient = self.gradient.map(|part| Output::to(part, width));
+        let mut states: Vec<State<V, LANES, D>> =
             self.octaves.iter().map(|octave| State::new(self.combine, octave)).collect();
         for z in planes {
             for state in &mut states {
@@ -65,71 +65,170 @@ impl Wide for Rows<'_> {
                     state.reach_row(y);
                     count = count.min(state.rows_in_cell(y));
                 }
-                let values = if away.is_some() { &mut buffer[..] } else { &mut near[..] };
-                // (A loop for each way to combine: there is little else in it.)
+                let outputs = (values.next(), gradient.each_mut().map(Output::next));
+                // (A loop for each way to combine: there is little else in it. Of what has a gradient and is folded, the
+                // registers have room for one row.)
                 let done = match (self.combine, count) {
-                    (Combine::Plain, 4) => add::<V, LANES, 4>(Combine::Plain, &states, y, width, values),
-                    (Combine::Plain, 2 | 3) => add::<V, LANES, 2>(Combine::Plain, &states, y, width, values),
-                    (Combine::Plain, _) => add::<V, LANES, 1>(Combine::Plain, &states, y, width, values),
-                    (Combine::Absolute, 4) => add::<V, LANES, 4>(Combine::Absolute, &states, y, width, values),
-                    (Combine::Absolute, 2 | 3) => add::<V, LANES, 2>(Combine::Absolute, &states, y, width, values),
-                    (combine, _) => add::<V, LANES, 1>(combine, &states, y, width, values),
+                    (Combine::Plain, 4) => add::<V, LANES, D, 4>(&states, y, width, outputs),
+                    (Combine::Plain, 2 | 3) => add::<V, LANES, D, 2>(&states, y, width, outputs),
+                    (Combine::Plain, _) => add::<V, LANES, D, 1>(&states, y, width, outputs),
+                    (combine @ Combine::Absolute, 4) if D == 0 => {
+                        fold::<V, LANES, D, 4>(combine, &states, y, width, outputs)
+                    }
+                    (combine @ Combine::Absolute, 2 | 3) if D == 0 => {
+                        fold::<V, LANES, D, 2>(combine, &states, y, width, outputs)
+                    }
+                    (combine, _) => fold::<V, LANES, D, 1>(combine, &states, y, width, outputs),
                 };
-                match &mut away {
-                    Some(away) => away.send::<V, LANES>(&buffer[..done * width]),
-                    None => near = &mut near[done * width..],
+                values.advance::<V, LANES>(done * width);
+                for part in &mut gradient {
+                    part.advance::<V, LANES>(done * width);
                 }
                 y += done;
             }
         }
-        if let Some(away) = away {
+        values.finish::<V, LANES>();
+        for output in gradient {
+            output.finish::<V, LANES>();
+        }
+    }
+}
+
+/// Numbers that are written row by row.
+enum Output<'a> {
+    Near(&'a mut [f32]),
+    /// Past the caches, and from where.
+    Away(Away<'a>, Vec<f32>),
+}
+
+impl<'a> Output<'a> {
+    /// To these numbers, in rows of this length.
+    fn to(numbers: &'a mut [f32], width: usize) -> Self {
+        if size_of_val(numbers) > LARGE {
+            Output::Away(Away::to(numbers), vec![0.0; SIDE_BY_SIDE * width])
+        } else {
+            Output::Near(numbers)
+        }
+    }
+
+    /// Where the next rows are to be written.
+    fn next(&mut self) -> &mut [f32] {
+        match self {
+            Output::Near(numbers) => numbers,
+            Output::Away(_, rows) => rows,
+        }
+    }
+
+    /// So many numbers have been written.
+    #[inline(always)]
+    fn advance<V: Vector<LANES>, const LANES: usize>(&mut self, count: usize) {
+        match self {
+            Output::Near(numbers) => *numbers = &mut std::mem::take(numbers)[count..],
+            Output::Away(away, rows) => away.send::<V, LANES>(&rows[..count]),
+        }
+    }
+
+    /// There are no more.
+    #[inline(always)]
+    fn finish<V: Vector<LANES>, const LANES: usize>(self) {
+        if let Output::Away(away, _) = self {
             away.finish::<V, LANES>();
         }
     }
 }
 
-/// Sums all octaves at the points of some rows of the same cells, from y on; returns how many.
+/// The sums of octaves at the points of some rows of the same cells, from y on; returns how many.
 #[inline(always)]
-fn add<V: Vector<LANES>, const LANES: usize, const ROWS: usize>(
-    combine: Combine,
-    states: &[State<V, LANES>],
+fn add<V: Vector<LANES>, const LANES: usize, const D: usize, const ROWS: usize>(
+    states: &[State<V, LANES, D>],
     y: usize,
     width: usize,
-    values: &mut [f32],
+    (values, gradient): (&mut [f32], [&mut [f32]; D]),
 ) -> usize {
+    add_part::<V, LANES, D, ROWS, 0>(states, y, width, values);
+    if D > 0 {
+        add_part::<V, LANES, D, ROWS, 1>(states, y, width, gradient[0]);
+    }
+    if D > 1 {
+        add_part::<V, LANES, D, ROWS, 2>(states, y, width, gradient[1]);
+    }
+    if D > 2 {
+        add_part::<V, LANES, D, ROWS, 3>(states, y, width, gradient[2]);
+    }
+    ROWS
+}
+
+/// The sums of a part: see [`State::blend`].
+#[inline(always)]
+fn add_part<V: Vector<LANES>, const LANES: usize, const D: usize, const ROWS: usize, const PART: usize>(
+    states: &[State<V, LANES, D>],
+    y: usize,
+    width: usize,
+    sums: &mut [f32],
+) {
     for vector in 0..width.div_ceil(LANES) {
-        let mut partials = [Partial::<V, 1>::new(); ROWS];
+        let mut totals = [V::constant(0.0); ROWS];
         for state in states {
-            let [p0, q0, p1, q1] = state.columns[vector];
-            let (frequency, amplitude) = (state.octave.frequency, state.octave.amplitude);
-            let factors: &[[f32; 4]; ROWS] = state.factors[y..].first_chunk().expect("there are so many rows");
+            let noises = state.blend::<ROWS, PART>(vector, y);
             for row in 0..ROWS {
-                let [a, b, c, d] = factors[row];
-                let (low, high) = (p0 * V::splat(a) + q0 * V::splat(b), p1 * V::splat(c) + q1 * V::splat(d));
-                if combine == Combine::Plain {
-                    // (The factors have the amplitude.)
-                    partials[row].sum.value = partials[row].sum.value + (low + high);
-                    continue;
-                }
-                let noise = Dual { value: low + high, gradient: [V::constant(0.0)] };
-                partials[row].add::<false>(combine, frequency, amplitude, combine.fold::<V, 1, false>(noise));
+                totals[row] = totals[row] + noises[row];
             }
         }
-        let x = vector * LANES;
         for row in 0..ROWS {
-            let values = &mut values[row * width..][x..width];
-            let sums = partials[row].sum.value;
-            match values.first_chunk_mut() {
-                Some(values) => sums.store(values),
-                None => {
-                    let mut lanes = [0.0; LANES];
-                    sums.store(&mut lanes);
-                    values.copy_from_slice(&lanes[..values.len()]);
+            store(totals[row], &mut sums[row * width..][..width], vector);
+        }
+    }
+}
+
+/// [`add`] for sums that are not plain: whose octaves' slopes depend on their values.
+#[inline(always)]
+fn fold<V: Vector<LANES>, const LANES: usize, const D: usize, const ROWS: usize>(
+    combine: Combine,
+    states: &[State<V, LANES, D>],
+    y: usize,
+    width: usize,
+    (values, gradient): (&mut [f32], [&mut [f32]; D]),
+) -> usize {
+    for vector in 0..width.div_ceil(LANES) {
+        let mut partials = [Partial::<V, D>::new(); ROWS];
+        for state in states {
+            let zero = V::constant(0.0);
+            let value = state.blend::<ROWS, 0>(vector, y);
+            let dx = if D > 0 { state.blend::<ROWS, 1>(vector, y) } else { [zero; ROWS] };
+            let dy = if D > 1 { state.blend::<ROWS, 2>(vector, y) } else { [zero; ROWS] };
+            let dz = if D > 2 { state.blend::<ROWS, 3>(vector, y) } else { [zero; ROWS] };
+            for row in 0..ROWS {
+                let mut noise = Dual { value: value[row], gradient: [zero; D] };
+                for axis in 0..D {
+                    noise.gradient[axis] = [dx[row], dy[row], dz[row]][axis];
                 }
+                let Octave { frequency, amplitude, .. } = *state.octave;
+                partials[row].add::<true>(combine, frequency, amplitude, combine.fold::<V, D, true>(noise));
+            }
+        }
+        for row in 0..ROWS {
+            let Dual { value, gradient: slopes } = partials[row].sum;
+            store(value, &mut values[row * width..][..width], vector);
+            for axis in 0..D {
+                store(slopes[axis], &mut gradient[axis][row * width..][..width], vector);
             }
         }
     }
     ROWS
+}
+
+/// Writes a vector of a row, of the last one as many lanes as there are points.
+#[inline(always)]
+fn store<V: Vector<LANES>, const LANES: usize>(numbers: V, row: &mut [f32], vector: usize) {
+    let row = &mut row[vector * LANES..];
+    match row.first_chunk_mut() {
+        Some(row) => numbers.store(row),
+        None => {
+            let mut lanes = [0.0; LANES];
+            numbers.store(&mut lanes);
+            row.copy_from_slice(&lanes[..row.len()]);
+        }
+    }
 }
 
 /// What a row of lattice points contributes: slopes along x and y, and the rest.
@@ -139,8 +238,15 @@ struct Lattice {
     c: Vec<f32>,
 }
 
+impl Lattice {
+    /// Of nothing, with room for so many points.
+    fn new(room: usize) -> Self {
+        Lattice { bx: vec![0.0; room], by: vec![0.0; room], c: vec![0.0; room] }
+    }
+}
+
 /// An octave on its way through the rows.
-struct State<'a, V: Real, const LANES: usize> {
+struct State<'a, V: Real, const LANES: usize, const D: usize> {
     octave: &'a Octave,
     /// The hashes of the lattice points along x, before those of y and z.
     hashes: Vec<i32>,
@@ -152,21 +258,30 @@ struct State<'a, V: Real, const LANES: usize> {
     /// How long a row of lattice points is, with some space after it.
     room: usize,
     lattice: Lattice,
+    /// Its derivative along z, with three slopes.
+    lattice_along_z: Lattice,
     /// For each vector of points where its window of lattice points begins, and where its points are in there.
     windows: Vec<(usize, V::Int)>,
     /// For each vector of points P and Q of the lower and of the upper row of lattice points.
     columns: Vec<[V; 4]>,
+    /// Their derivatives along x, and along z, as far as there are slopes (in plain sums times the frequency).
+    along_x: Vec<[V; 4]>,
+    along_z: Vec<[V; 4]>,
     /// The lower row in `columns`, if there is one.
     row: Option<usize>,
     plane: usize,
     /// For each row of points what P and Q are multiplied by (in plain sums times the amplitude).
     factors: Vec<[f32; 4]>,
+    /// Their derivatives along y (in plain sums times the frequency).
+    slope_factors: Vec<[f32; 4]>,
+    /// What derivatives are multiplied by.
+    steepness: f32,
 }
 
 /// The hashes of so many lattice points are kept from plane to plane, where several planes lie between the same ones.
 const KEPT: usize = 1 << 14;
 
-impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
+impl<'a, V: Vector<LANES>, const LANES: usize, const D: usize> State<'a, V, LANES, D> {
     #[inline(always)]
     fn new(combine: Combine, octave: &'a Octave) -> Self {
         let [x, y, z] = &octave.axes;
@@ -186,12 +301,17 @@ impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
             }
             (cells[0], V::load_int(&places))
         };
-        let factors = y.curve.iter().zip(y.from_low.iter().zip(&y.from_high));
-        let scale = if combine == Combine::Plain { octave.amplitude as f32 } else { 1.0 };
-        let factors = factors.map(|(v, (low, high))| {
-            let (lower, upper) = (scale * (1.0 - v), scale * v);
-            [lower, lower * low, upper, upper * high]
-        });
+        let (scale, steepness) = match combine {
+            Combine::Plain => (octave.amplitude as f32, octave.frequency as f32),
+            _ => (1.0, 1.0),
+        };
+        let (mut factors, mut slope_factors) = (Vec::new(), Vec::new());
+        for (i, (low, high)) in y.from_low.iter().zip(&y.from_high).enumerate() {
+            let (lower, upper) = (scale * (1.0 - y.curve[i]), scale * y.curve[i]);
+            factors.push([lower, lower * low, upper, upper * high]);
+            let (slope, lower, upper) = (scale * steepness * y.slope[i], steepness * lower, steepness * upper);
+            slope_factors.push([-slope, lower - slope * low, slope, upper + slope * high]);
+        }
         let mut hashes: Vec<i32> = x.lattice.iter().map(hash).collect();
         hashes.resize(room, 0);
         State {
@@ -201,18 +321,42 @@ impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
             above: vec![0; room * kept],
             hashed: vec![None; kept],
             room,
-            lattice: Lattice { bx: vec![0.0; room], by: vec![0.0; room], c: vec![0.0; room] },
+            lattice: Lattice::new(room),
+            lattice_along_z: Lattice::new(if D > 2 { room } else { 0 }),
             windows: chunks.iter().map(window).collect(),
             columns: vec![[V::constant(0.0); 4]; chunks.len()],
+            along_x: vec![[V::constant(0.0); 4]; if D > 0 { chunks.len() } else { 0 }],
+            along_z: vec![[V::constant(0.0); 4]; if D > 2 { chunks.len() } else { 0 }],
             row: None,
             plane: 0,
-            factors: factors.collect(),
+            factors,
+            slope_factors,
+            steepness,
         }
     }
 
     #[inline(always)]
     fn start_plane(&mut self, z: usize) {
         (self.plane, self.row) = (z, None);
+    }
+
+    /// A part of the octave at a vector of points in each of some rows: the noise (0), or its derivative along an axis (1 to 3).
+    #[inline(always)]
+    fn blend<const ROWS: usize, const PART: usize>(&self, vector: usize, y: usize) -> [V; ROWS] {
+        let columns = match PART {
+            1 => &self.along_x,
+            3 => &self.along_z,
+            _ => &self.columns,
+        };
+        let [p0, q0, p1, q1] = columns[vector];
+        let factors = if PART == 2 { &self.slope_factors } else { &self.factors };
+        let factors: &[[f32; 4]; ROWS] = factors[y..].first_chunk().expect("there are so many rows");
+        let mut blends = [p0; ROWS];
+        for row in 0..ROWS {
+            let [a, b, c, d] = factors[row];
+            blends[row] = (p0 * V::splat(a) + q0 * V::splat(b)) + (p1 * V::splat(c) + q1 * V::splat(d));
+        }
+        blends
     }
 
     /// How many rows of points lie in the same row of cells, from y on (as far as they are of interest).
@@ -231,8 +375,10 @@ impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
                 self.blend_lattice(row);
                 self.expand();
             }
-            for column in &mut self.columns {
-                (column[0], column[1]) = (column[2], column[3]);
+            for columns in [&mut self.columns, &mut self.along_x, &mut self.along_z] {
+                for column in columns {
+                    (column[0], column[1]) = (column[2], column[3]);
+                }
             }
             self.blend_lattice(row + 1);
             self.expand();
@@ -245,25 +391,17 @@ impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
     fn blend_lattice(&mut self, row: usize) {
         let at = self.hash_row(row);
         let axis = &self.octave.axes[2];
-        let w = axis.curve[self.plane];
-        let (low, high) = (V::splat(1.0 - w), V::splat(w));
-        let from_low = V::splat(axis.from_low[self.plane] * (1.0 - w));
-        let from_high = V::splat(axis.from_high[self.plane] * w);
+        let (w, slope) = (axis.curve[self.plane], axis.slope[self.plane] * self.steepness);
+        let (low, high) = (1.0 - w, w);
+        let (from_low, from_high) = (axis.from_low[self.plane], axis.from_high[self.plane]);
         let (basis, tables) = (self.octave.noise.basis(), self.octave.noise.tables());
-        let Lattice { bx, by, c } = &mut self.lattice;
-        let outputs = bx.as_chunks_mut().0.iter_mut().zip(by.as_chunks_mut().0).zip(c.as_chunks_mut().0);
-        let hashes = self.below[at..].as_chunks().0.iter().zip(self.above[at..].as_chunks().0);
-        for (((bx, by), c), (below, above)) in outputs.zip(hashes) {
-            let (below, above) = (V::load_int(below), V::load_int(above));
-            if basis == Basis::Lattice || basis == Basis::Value {
-                (number::<V>(basis, below) * low + number::<V>(basis, above) * high).store(c);
-            } else {
-                let [x0, y0, z0] = gradient::<V>(basis, tables, below);
-                let [x1, y1, z1] = gradient::<V>(basis, tables, above);
-                (x0 * low + x1 * high).store(bx);
-                (y0 * low + y1 * high).store(by);
-                (z0 * from_low + z1 * from_high).store(c);
-            }
+        let hashes = [&self.below[at..], &self.above[at..]];
+        let weights = Weights { slopes: [low, high], rest: [from_low * low, from_high * high] };
+        self.lattice.blend::<V, LANES>(basis, tables, hashes, weights);
+        if D > 2 {
+            let (low, high) = (low * self.steepness, high * self.steepness);
+            let rest = [low - from_low * slope, high + from_high * slope];
+            self.lattice_along_z.blend::<V, LANES>(basis, tables, hashes, Weights { slopes: [-slope, slope], rest });
         }
     }
 
@@ -320,17 +458,78 @@ impl<'a, V: Vector<LANES>, const LANES: usize> State<'a, V, LANES> {
     #[inline(always)]
     fn expand(&mut self) {
         let [x, _, _] = &self.octave.axes;
-        let Lattice { bx, by, c } = &self.lattice;
+        let steepness = V::splat(self.steepness);
         let offsets = x.from_low.as_chunks().0.iter().zip(x.from_high.as_chunks().0).zip(x.curve.as_chunks().0);
-        let columns = self.columns.iter_mut().zip(&self.windows);
-        for ((column, &(start, places)), ((low, high), u)) in columns.zip(offsets) {
-            let (low, high, u) = (V::load(low), V::load(high), V::load(u));
-            let left = pick::<V, LANES>(c, start, places) + pick::<V, LANES>(bx, start, places) * low;
-            let right = pick::<V, LANES>(c, start + 1, places) + pick::<V, LANES>(bx, start + 1, places) * high;
-            let (by0, by1) = (pick::<V, LANES>(by, start, places), pick::<V, LANES>(by, start + 1, places));
-            column[2] = left + u * (right - left);
-            column[3] = by0 + u * (by1 - by0);
+        let columns = self.columns.iter_mut().zip(&self.windows).enumerate();
+        for ((i, (column, &window)), ((low, high), u)) in columns.zip(offsets) {
+            let (offsets, u) = ([V::load(low), V::load(high)], V::load(u));
+            let [p, q] = self.lattice.ends(window, offsets);
+            (column[2], column[3]) = (lerp(u, p[0], p[1]), lerp(u, q[0], q[1]));
+            if D > 0 {
+                let slope = V::load(&x.slope.as_chunks().0[i]);
+                let (start, places) = window;
+                let b0 = pick::<V, LANES>(&self.lattice.bx, start, places);
+                let b1 = pick::<V, LANES>(&self.lattice.bx, start + 1, places);
+                let along_x = &mut self.along_x[i];
+                along_x[2] = steepness * (lerp(u, b0, b1) + slope * (p[1] - p[0]));
+                along_x[3] = steepness * (slope * (q[1] - q[0]));
+            }
+            if D > 2 {
+                let [p, q] = self.lattice_along_z.ends(window, offsets);
+                let along_z = &mut self.along_z[i];
+                (along_z[2], along_z[3]) = (lerp(u, p[0], p[1]), lerp(u, q[0], q[1]));
+            }
         }
+    }
+}
+
+/// What the slopes of the lattice points below and above z are multiplied by, along x and y, and along z. (Numbers: as the slopes along x.)
+struct Weights {
+    slopes: [f32; 2],
+    rest: [f32; 2],
+}
+
+impl Lattice {
+    /// What lattice points below and above z contribute, from their hashes.
+    #[inline(always)]
+    fn blend<V: Vector<LANES>, const LANES: usize>(
+        &mut self,
+        basis: Basis,
+        tables: &Tables,
+        [below, above]: [&[i32]; 2],
+        weights: Weights,
+    ) {
+        let [low, high] = [V::splat(weights.slopes[0]), V::splat(weights.slopes[1])];
+        let [from_low, from_high] = [V::splat(weights.rest[0]), V::splat(weights.rest[1])];
+        let Lattice { bx, by, c } = self;
+        let outputs = bx.as_chunks_mut().0.iter_mut().zip(by.as_chunks_mut().0).zip(c.as_chunks_mut().0);
+        let hashes = below.as_chunks().0.iter().zip(above.as_chunks().0);
+        for (((bx, by), c), (below, above)) in outputs.zip(hashes) {
+            let (below, above) = (V::load_int(below), V::load_int(above));
+            if basis == Basis::Lattice || basis == Basis::Value {
+                (number::<V>(basis, below) * low + number::<V>(basis, above) * high).store(c);
+            } else {
+                let [x0, y0, z0] = gradient::<V>(basis, tables, below);
+                let [x1, y1, z1] = gradient::<V>(basis, tables, above);
+                (x0 * low + x1 * high).store(bx);
+                (y0 * low + y1 * high).store(by);
+                (z0 * from_low + z1 * from_high).store(c);
+            }
+        }
+    }
+
+    /// P and Q at the lattice points left and right of points in a window, seen from these offsets.
+    #[inline(always)]
+    fn ends<V: Vector<LANES>, const LANES: usize>(
+        &self,
+        (start, places): (usize, V::Int),
+        [low, high]: [V; 2],
+    ) -> [[V; 2]; 2] {
+        let Lattice { bx, by, c } = self;
+        let left = pick::<V, LANES>(c, start, places) + pick::<V, LANES>(bx, start, places) * low;
+        let right = pick::<V, LANES>(c, start + 1, places) + pick::<V, LANES>(bx, start + 1, places) * high;
+        let (by0, by1) = (pick::<V, LANES>(by, start, places), pick::<V, LANES>(by, start + 1, places));
+        [[left, right], [by0, by1]]
     }
 }
 
