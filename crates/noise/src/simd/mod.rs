@@ -255,7 +255,9 @@ pub(crate) fn sum_improved_in_plane(
 ) -> usize {
     assert_lengths(&points, sums.len());
     match level.min(machine_level()) {
-        // SAFETY: the machine has the instructions, `machine_level` says.
+        // SAFETY, for both: the machine has the instructions, `machine_level` says.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 => unsafe { avx2::improved::sum_in_plane(tables, terms, points, sums) },
         #[cfg(target_arch = "x86_64")]
         Level::Avx512 => unsafe { avx512::plane::sum(tables, terms, points, sums) },
         _ => 0,
