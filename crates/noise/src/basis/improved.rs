@@ -103,22 +103,35 @@ fn from_corner<R: Real, const D: usize>(offset: &[R; D], corner: usize) -> [R; 4
 /// The blend of the sixteen corners in four dimensions, from their hashes.
 #[inline(always)]
 fn blend_four<R: Real, const D: usize, const G: bool>(hashes: Corners<R::Int>, offset: [R; D]) -> Dual<R, D> {
-    let (zero, one) = (R::constant(0.0), R::constant(1.0));
+    let zero = R::constant(0.0);
     let (mut values, mut slopes) = ([zero; 16], [[zero; D]; 16]);
     for i in 0..16 {
         let [x, y, z, w] = from_corner(&offset, i);
         // Which three axes: w, x, y for 1, z, w, x for 2, and else y, z, w.
         let which = hashes[i] & R::Int::constant(24);
-        let (first, second) = (which.equals(R::Int::constant(8)), which.equals(R::Int::constant(16)));
-        let pick = |a, b, c| R::select(first, a, R::select(second, b, c));
-        let sign = |bit: i32| R::select((hashes[i] & R::Int::constant(bit)).equals(R::Int::constant(0)), -one, one);
-        let signs = [sign(4), sign(2), sign(1)];
-        values[i] = signs[0] * pick(w, z, y) + signs[1] * pick(x, w, z) + signs[2] * pick(y, x, w);
+        let which = [which.equals(R::Int::constant(8)), which.equals(R::Int::constant(16))];
+        let [a, b, c] = [sign::<R>(hashes[i], 4), sign::<R>(hashes[i], 2), sign::<R>(hashes[i], 1)];
+        values[i] = a * pick(which, [w, z, y]) + b * pick(which, [x, w, z]) + c * pick(which, [y, x, w]);
         if G {
-            let [a, b, c] = signs;
-            let gradient = [pick(b, c, zero), pick(c, zero, a), pick(zero, a, b), pick(a, b, c)];
-            slopes[i][..D].copy_from_slice(&gradient[..D]);
+            let along = [[b, c, zero], [c, zero, a], [zero, a, b], [a, b, c]];
+            for axis in 0..D {
+                slopes[i][axis] = pick(which, along[axis]);
+            }
         }
     }
     blend::<R, D, G>(values, if G { Some(slopes) } else { None }, &Curve::quintic(&offset))
+}
+
+/// The first number where the first is so, the second where the second is, and else the third. (No closure, and no more is
+/// [`sign`]: they are not sure to be inlined.)
+#[inline(always)]
+fn pick<R: Real>([first, second]: [R::Mask; 2], [a, b, c]: [R; 3]) -> R {
+    R::select(first, a, R::select(second, b, c))
+}
+
+/// 1 where this bit of a hash is set, else −1.
+#[inline(always)]
+fn sign<R: Real>(hash: R::Int, bit: i32) -> R {
+    let (one, clear) = (R::constant(1.0), (hash & R::Int::constant(bit)).equals(R::Int::constant(0)));
+    R::select(clear, -one, one)
 }

@@ -429,10 +429,13 @@ fn sum_four<R: Real, const G: bool, const P: bool>(tables: &Tables, point: [R; 4
         }
         let bits = hash::bits::<R>(mixed);
         // One of the four axes has no part; the other three have random signs.
-        let sign = |bit: i32| R::select((bits & R::Int::constant(bit << 20)).equals(R::Int::constant(0)), one, -one);
         let without = bits.shift_right(30);
-        let part = |axis: i32| R::select(without.equals(R::Int::constant(axis)), zero, sign(1 << axis));
-        let gradient = [part(0), part(1), part(2), part(3)];
+        let mut gradient = [zero; 4];
+        for axis in 0..4 {
+            let sign = bits & R::Int::constant(1 << (axis + 20));
+            let part = R::select(sign.equals(R::Int::constant(0)), one, -one);
+            gradient[axis] = R::select(without.equals(R::Int::constant(axis as i32)), zero, part);
+        }
         add_corner::<R, 4, G>(&mut sum, from, gradient);
     }
     sum
