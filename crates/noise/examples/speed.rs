@@ -37,9 +37,10 @@ fn main() {
     };
     let (x, y, z) = (coordinates(), coordinates(), coordinates());
     let mut values = vec![0.0; COUNT];
+    let mut slopes = [(); 3].map(|()| vec![0.0; COUNT]);
     println!(
-        "{:10} {:8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}",
-        "basis", "level", "space", "plane", "sum of 7", "of 64", "single", "5 octaves"
+        "{:10} {:8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}",
+        "basis", "level", "space", "plane", "four", "gradient", "sum of 7", "of 64", "single", "5 octaves"
     );
     for &basis in Basis::ALL {
         let noise = Noise::new(basis, 0);
@@ -47,6 +48,11 @@ fn main() {
         for level in Level::ALL.into_iter().filter(|&level| level <= machine_level()) {
             let space = time(COUNT, || noise.fill_at(level, [&x, &y, &z], black_box(&mut values)));
             let plane = time(COUNT, || noise.fill_at(level, [&x, &y], black_box(&mut values)));
+            let four = time(COUNT, || noise.fill_at(level, [&x, &y, &z, &x], black_box(&mut values)));
+            let gradient = time(COUNT, || {
+                let slopes = slopes.each_mut().map(Vec::as_mut_slice);
+                noise.fill_with_gradient_at(level, [&x, &y, &z], black_box(&mut values), slopes);
+            });
             let octave = time(7 * COUNT, || sum.fill_at(level, [&x, &y, &z], black_box(&mut values)));
             let small = time(COUNT, || {
                 for start in (0..COUNT).step_by(64) {
@@ -67,7 +73,7 @@ fn main() {
                 }
             });
             println!(
-                "{:10} {:8} {space:9.3} {plane:9.3} {octave:9.3} {small:9.3} {single:9.3} {single_sum:9.3}",
+                "{:10} {:8} {space:9.3} {plane:9.3} {four:9.3} {gradient:9.3} {octave:9.3} {small:9.3} {single:9.3} {single_sum:9.3}",
                 basis.name(),
                 level.name()
             );

@@ -238,6 +238,9 @@ impl Noise {
     pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
         match point[..] {
             [x, y, z] => self.in_space.at(self, [x, y, z]),
+            // (A slice of space, with the same bits.)
+            [x, y] if self.has_kernel => self.in_space.at(self, [x, y, 0.0]),
+            [x] if self.has_kernel => self.in_space.at(self, [x, 0.0, 0.0]),
             _ => self.value_at(&point),
         }
     }

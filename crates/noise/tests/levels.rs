@@ -212,6 +212,8 @@ fn single_points_have_the_bits_of_batches() {
                 assert!(same(noise.at([x[i], y[i]]), noise.value([x[i], y[i]])), "{basis:?} at {point:?}");
                 assert!(same(sum.at(point), sum.value(point)), "{basis:?} at {point:?}");
                 assert!(same(sum.at([x[i], y[i]]), sum.value([x[i], y[i]])), "{basis:?} at {point:?}");
+                assert!(same(noise.at([x[i]]), noise.value([x[i]])), "{basis:?} at {}", x[i]);
+                assert!(same(sum.at([x[i]]), sum.value([x[i]])), "{basis:?} at {}", x[i]);
             }
         }
     }

@@ -275,12 +275,11 @@ impl Sum {
             }
             while values.len() - done <= FEW && done < values.len() {
                 let point = points.map(|coordinates| coordinates[done]);
-                values[done] = match point[..] {
-                    [x, y, z] if level == simd::level() && self.noise.has_kernel() => self.in_space.at(self, [x, y, z]),
-                    _ => match self.noise.sum_at(level, &self.terms(), point) {
-                        Some(sum) => sum,
-                        None => break,
-                    },
+                values[done] = if level == simd::level() && self.noise.has_kernel() {
+                    self.at(point)
+                } else {
+                    let Some(sum) = self.noise.sum_at(level, &self.terms(), point) else { break };
+                    sum
                 };
                 done += 1;
             }
@@ -348,6 +347,9 @@ impl Sum {
     pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
         match point[..] {
             [x, y, z] => self.in_space.at(self, [x, y, z]),
+            // (A slice of space, with the same bits.)
+            [x, y] if self.noise.has_kernel() => self.in_space.at(self, [x, y, 0.0]),
+            [x] if self.noise.has_kernel() => self.in_space.at(self, [x, 0.0, 0.0]),
             _ => self.sum_at(point),
         }
     }
