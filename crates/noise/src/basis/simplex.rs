@@ -431,10 +431,10 @@ fn sum_four<R: Real, const G: bool, const P: bool>(tables: &Tables, point: [R; 4
         // One of the four axes has no part; the other three have random signs.
         let without = bits.shift_right(30);
         let mut gradient = [zero; 4];
-        for axis in 0..4 {
+        for (axis, part) in gradient.iter_mut().enumerate() {
             let sign = bits & R::Int::constant(1 << (axis + 20));
-            let part = R::select(sign.equals(R::Int::constant(0)), one, -one);
-            gradient[axis] = R::select(without.equals(R::Int::constant(axis as i32)), zero, part);
+            let signed = R::select(sign.equals(R::Int::constant(0)), one, -one);
+            *part = R::select(without.equals(R::Int::constant(axis as i32)), zero, signed);
         }
         add_corner::<R, 4, G>(&mut sum, from, gradient);
     }
