@@ -190,7 +190,7 @@ impl Noise {
             return;
         }
         // (What most callers want, at once: of short slices the way here would be a tenth.)
-        let done = self.sum_fast(level, None, &points, [&mut *values]);
+        let done = self.sum_fast(level, None, &points, values, &mut []);
         if done < values.len() {
             let rest = points.map(|axis| &axis[done..]);
             Octave { noise: self, frequency: 1.0 }.fill(level, &rest, &mut values[done..], &mut []);
@@ -261,31 +261,37 @@ impl Noise {
         }
     }
 
-    /// The sums (without terms: the noise itself) at the first points by a kernel made by hand, if there is one for this noise; returns how many.
+    /// The sums (without terms: the noise itself) at the first points and, if there are slices for it, their gradient, by a kernel
+    /// made by hand, if there is one for this noise; returns how many.
     #[inline(always)]
-    pub(crate) fn sum_fast<const N: usize>(
+    pub(crate) fn sum_fast(
         &self,
         level: Level,
         terms: Option<&Terms>,
         points: &[&[f32]],
-        mut outputs: [&mut [f32]; N],
+        values: &mut [f32],
+        gradient: &mut [&mut [f32]],
     ) -> usize {
-        match (points, &mut outputs[..]) {
-            (&[x, y, z], _) if self.has_kernel => simd::sum_improved(level, &self.tables, terms, [x, y, z], outputs),
-            (&[x, y], [sums]) if self.has_kernel => {
-                simd::sum_improved_in_plane(level, &self.tables, terms, [x, y], sums)
-            }
+        let tables = &self.tables;
+        match (points, gradient) {
+            _ if !self.has_kernel => 0,
+            (&[x, y, z], []) => simd::sum_improved(level, tables, terms, [x, y, z], [values]),
+            (&[x, y, z], [dx, dy, dz]) => simd::sum_improved(level, tables, terms, [x, y, z], [values, dx, dy, dz]),
+            (&[x, y], []) => simd::sum_improved_in_plane(level, tables, terms, [x, y], [values]),
+            (&[x, y], [dx, dy]) => simd::sum_improved_in_plane(level, tables, terms, [x, y], [values, dx, dy]),
             _ => 0,
         }
     }
 
     /// [`Noise::sum_fast`] of the noise alone, and of those that have a faster way for many points.
-    fn fill_fast<const N: usize>(&self, level: Level, points: &[&[f32]], outputs: [&mut [f32]; N]) -> usize {
-        match *points {
-            [x, y, z] if self.basis == Basis::Simplex && self.period == [0.0; 4] => {
-                simplex::fill(level, &self.tables, [x, y, z], outputs)
+    fn fill_fast(&self, level: Level, points: &[&[f32]], values: &mut [f32], gradient: &mut [&mut [f32]]) -> usize {
+        match (points, &mut *gradient) {
+            _ if self.basis != Basis::Simplex || self.period != [0.0; 4] => {
+                self.sum_fast(level, None, points, values, gradient)
             }
-            _ => self.sum_fast(level, None, points, outputs),
+            (&[x, y, z], []) => simplex::fill(level, &self.tables, [x, y, z], [values]),
+            (&[x, y, z], [dx, dy, dz]) => simplex::fill(level, &self.tables, [x, y, z], [values, dx, dy, dz]),
+            _ => 0,
         }
     }
 
@@ -372,11 +378,7 @@ impl Octave<'_> {
     /// The values at many points and, if there are slices for it, their gradient, as fast as can be.
     pub fn fill(&self, level: Level, points: &[&[f32]], values: &mut [f32], gradient: &mut [&mut [f32]]) {
         let noise = self.noise;
-        let done = match gradient {
-            [] => noise.fill_fast(level, points, [&mut *values]),
-            [x, y, z] => noise.fill_fast(level, points, [&mut *values, x, y, z]),
-            _ => 0,
-        };
+        let done = noise.fill_fast(level, points, values, gradient);
         if done == values.len() {
             return;
         }

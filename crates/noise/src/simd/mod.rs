@@ -245,21 +245,23 @@ pub(crate) fn sum_improved<const N: usize>(
     }
 }
 
-/// [`sum_improved`] in the plane, without a gradient.
-pub(crate) fn sum_improved_in_plane(
+/// [`sum_improved`] in the plane (and its gradient, where there are three outputs).
+pub(crate) fn sum_improved_in_plane<const N: usize>(
     level: Level,
     tables: &Tables,
     terms: Option<&Terms>,
     points: [&[f32]; 2],
-    sums: &mut [f32],
+    outputs: [&mut [f32]; N],
 ) -> usize {
-    assert_lengths(&points, sums.len());
+    let count = outputs[0].len();
+    assert_lengths(&points, count);
+    assert_lengths(&outputs, count);
     match level.min(machine_level()) {
         // SAFETY, for both: the machine has the instructions, `machine_level` says.
         #[cfg(target_arch = "x86_64")]
-        Level::Avx2 => unsafe { avx2::improved::sum_in_plane(tables, terms, points, sums) },
+        Level::Avx2 => unsafe { avx2::improved::sum_in_plane(tables, terms, points, outputs) },
         #[cfg(target_arch = "x86_64")]
-        Level::Avx512 => unsafe { avx512::plane::sum(tables, terms, points, sums) },
+        Level::Avx512 => unsafe { avx512::plane::sum(tables, terms, points, outputs) },
         _ => 0,
     }
 }

@@ -14,7 +14,7 @@ use crate::simd::{Away, BATCH, Terms, Vector};
 /// The coordinates of a step along each axis.
 pub(super) type Point<'a, const STEP: usize> = [&'a [f32; STEP]; 3];
 
-/// The values of a step, and with N = 4 their derivatives along each axis.
+/// The values of a step, and with N > 1 their derivatives along each axis.
 pub(super) type Sums<'a, const STEP: usize, const N: usize> = [&'a mut [f32; STEP]; N];
 
 /// Points whose octaves are summed before the next ones: their coordinates and sums stay in the first cache.
@@ -328,14 +328,41 @@ pub(super) fn add_vector<V: Vector<LANES>, const STEP: usize, const LANES: usize
 ) {
     let sample =
         if N == 4 { blend_codes::<V, 3, true>(codes, offset) } else { blend_codes::<V, 3, false>(codes, offset) };
-    add::<V, STEP, LANES, N, USE>(octave, sample, sums, vector);
+    add::<V, STEP, LANES, 3, N, USE>(octave, sample, sums, vector);
+}
+
+/// [`add_vector`] in the plane.
+#[inline(always)]
+pub(super) fn add_vector_in_plane<
+    V: Vector<LANES>,
+    const STEP: usize,
+    const LANES: usize,
+    const N: usize,
+    const USE: u8,
+>(
+    octave: &Octave,
+    codes: Corners<V::Int>,
+    [x, y, _]: [V; 3],
+    sums: &mut Sums<STEP, N>,
+    vector: usize,
+) {
+    let sample =
+        if N == 3 { blend_codes::<V, 2, true>(codes, [x, y]) } else { blend_codes::<V, 2, false>(codes, [x, y]) };
+    add::<V, STEP, LANES, 2, N, USE>(octave, sample, sums, vector);
 }
 
 /// Adds an octave's noise at the points of one vector of a step.
 #[inline(always)]
-pub(super) fn add<V: Vector<LANES>, const STEP: usize, const LANES: usize, const N: usize, const USE: u8>(
+pub(super) fn add<
+    V: Vector<LANES>,
+    const STEP: usize,
+    const LANES: usize,
+    const D: usize,
+    const N: usize,
+    const USE: u8,
+>(
     octave: &Octave,
-    sample: Dual<V, 3>,
+    sample: Dual<V, D>,
     sums: &mut Sums<STEP, N>,
     vector: usize,
 ) {

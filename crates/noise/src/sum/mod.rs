@@ -267,7 +267,7 @@ impl Sum {
         let mut done = 0;
         if self.combine.is_plain() {
             if values.len() > FEW {
-                done = self.noise.sum_fast(level, Some(&self.terms()), &points, [&mut *values]);
+                done = self.noise.sum_fast(level, Some(&self.terms()), &points, values, &mut []);
             }
             done += self.fill_last(level, points.map(|coordinates| &coordinates[done..]), &mut values[done..]);
             if done == values.len() {
@@ -300,7 +300,7 @@ impl Sum {
             step.0[..count].copy_from_slice(points);
         }
         let step = step.each_ref().map(|axis| &axis.0[..length]);
-        let done = self.noise.sum_fast(level, Some(&self.terms()), &step, [&mut sums.0[..length]]).min(count);
+        let done = self.noise.sum_fast(level, Some(&self.terms()), &step, &mut sums.0[..length], &mut []).min(count);
         values[..done].copy_from_slice(&sums.0[..done]);
         done
     }
@@ -334,8 +334,8 @@ impl Sum {
         simd::assert_lengths(&points, values.len());
         simd::assert_lengths(&gradient, values.len());
         let mut done = 0;
-        if let (true, [x, y, z]) = (self.combine.is_plain(), &mut gradient[..]) {
-            done = self.noise.sum_fast(level, Some(&self.terms()), &points, [&mut *values, x, y, z]);
+        if self.combine.is_plain() {
+            done = self.noise.sum_fast(level, Some(&self.terms()), &points, values, &mut gradient);
         }
         let points = points.map(|coordinates| &coordinates[done..]);
         let mut gradient = gradient.map(|part| &mut part[done..]);

@@ -11,7 +11,6 @@ use std::arch::x86_64::*;
 use super::{F32x8, I32x8, chosen, corners};
 use crate::basis::Tables;
 use crate::basis::corners::{Corners, Curve, lerp};
-use crate::basis::improved::blend_codes;
 use crate::number::{Dual, Integer, Real};
 use crate::simd::pipeline::{self, ALONE, Halves, Octave, PLAIN, Point, Sums};
 use crate::simd::{BATCH, Terms, Vector, triples};
@@ -32,17 +31,17 @@ pub(in crate::simd) fn sum<const N: usize>(
     pipeline::sum(&Staged::<3>(&tables.corners), terms, [&x[..whole], &y[..whole], &z[..whole]], outputs)
 }
 
-/// The sums at the first points of the plane: as [`sum`], without gradients.
+/// The sums (and gradients) at the first points of the plane: as [`sum`].
 #[target_feature(enable = "avx2,fma")]
-pub(in crate::simd) fn sum_in_plane(
+pub(in crate::simd) fn sum_in_plane<const N: usize>(
     tables: &Tables,
     terms: Option<&Terms>,
     [x, y]: [&[f32]; 2],
-    sums: &mut [f32],
+    outputs: [&mut [f32]; N],
 ) -> usize {
-    let whole = sums.len() / LANES * LANES;
+    let whole = outputs[0].len() / LANES * LANES;
     // (There is no third coordinate; what stands in its place is not read.)
-    pipeline::sum(&Staged::<2>(&tables.corners), terms, [&x[..whole], &y[..whole], &y[..whole]], [sums])
+    pipeline::sum(&Staged::<2>(&tables.corners), terms, [&x[..whole], &y[..whole], &y[..whole]], outputs)
 }
 
 /// The noise itself at a batch of points.
@@ -160,7 +159,7 @@ impl<const D: usize> Halves<LANES> for Staged<'_, D> {
         let (codes, offset) = unsafe { locate::<USE>(&current, octave, point) };
         let value = blend(codes, offset, &mut Hashes { tables: self.0, cells, codes: hashed });
         unsafe { cells.find::<USE, D>(frequency, later) };
-        pipeline::add::<F32x8, LANES, LANES, N, USE>(octave, Dual { value, gradient: [value; 3] }, &mut sums, 0);
+        pipeline::add::<F32x8, LANES, LANES, 3, N, USE>(octave, Dual { value, gradient: [value; 3] }, &mut sums, 0);
     }
 
     #[inline(always)]
@@ -276,16 +275,14 @@ fn add_vector<const USE: u8, const N: usize, const D: usize>(
     sums: &mut Sums<LANES, N>,
 ) {
     let (codes, offset) = locate::<USE>(codes, octave, point);
+    if D == 2 {
+        return pipeline::add_vector_in_plane::<F32x8, LANES, LANES, N, USE>(octave, by_corner(codes), offset, sums, 0);
+    }
     if N == 4 {
         return pipeline::add_vector::<F32x8, LANES, LANES, N, USE>(octave, by_corner(codes), offset, sums, 0);
     }
-    let value = if D == 2 {
-        let [x, y, _] = offset;
-        blend_codes::<F32x8, 2, false>(by_corner(codes), [x, y]).value
-    } else {
-        blend(codes, offset, &mut Nothing)
-    };
-    pipeline::add::<F32x8, LANES, LANES, N, USE>(octave, Dual { value, gradient: [value; 3] }, sums, 0);
+    let value = blend(codes, offset, &mut Nothing);
+    pipeline::add::<F32x8, LANES, LANES, 3, N, USE>(octave, Dual { value, gradient: [value; 3] }, sums, 0);
 }
 
 /// The codes of eight points, and their offsets in their cells.

@@ -247,7 +247,7 @@ fn finish_vector<const GROUP: usize, const USE: u8, const N: usize>(
 ) {
     let curve = Curve { at: curve, slope: curve };
     let sample = blend_dots::<F32x16, 3, false>(corners::<GROUP>(codes), offset, &curve);
-    pipeline::add::<F32x16, STEP, 16, N, USE>(octave, sample, sums, GROUP);
+    pipeline::add::<F32x16, STEP, 16, 3, N, USE>(octave, sample, sums, GROUP);
 }
 
 /// Adds one octave at sixteen of 64 points.

@@ -6,17 +6,21 @@ use std::arch::x86_64::*;
 use super::improved::{InRegisters, STEP, cells, load_table, lookup, offset};
 use super::{F32x16, I32x16};
 use crate::basis::Tables;
-use crate::basis::improved::blend_codes;
-use crate::number::{Dual, Integer, Real};
+use crate::number::Integer;
 use crate::simd::Terms;
 use crate::simd::pipeline::{self, Octave, Point, Sums};
 
-/// The sums at the first points (without terms: the noise itself), a multiple of 64 of them; returns how many.
+/// The sums (and gradients) at the first points (without terms: the noise itself), a multiple of 64 of them; returns how many.
 #[target_feature(enable = "avx2,fma,avx512f,avx512bw,avx512dq,avx512vl,avx512vbmi,avx512vbmi2")]
-pub(in crate::simd) fn sum(tables: &Tables, terms: Option<&Terms>, [x, y]: [&[f32]; 2], sums: &mut [f32]) -> usize {
-    let whole = sums.len() / STEP * STEP;
+pub(in crate::simd) fn sum<const N: usize>(
+    tables: &Tables,
+    terms: Option<&Terms>,
+    [x, y]: [&[f32]; 2],
+    outputs: [&mut [f32]; N],
+) -> usize {
+    let whole = outputs[0].len() / STEP * STEP;
     // (There is no third coordinate; what stands in its place is not read.)
-    pipeline::sum(&InPlane(tables), terms, [&x[..whole], &y[..whole], &y[..whole]], [sums])
+    pipeline::sum(&InPlane(tables), terms, [&x[..whole], &y[..whole], &y[..whole]], outputs)
 }
 
 /// The kernel. It exists only where the machine has the instructions.
@@ -68,10 +72,8 @@ fn add_vector<const GROUP: usize, const USE: u8, const N: usize>(
         corners[column] = I32x16(codes[column]).shift_right(bit);
         corners[column + 2] = I32x16(codes[column]).shift_right(bit + 4);
     }
-    let [x, y, _] = offset::<USE, 2>(octave, point, GROUP);
-    let Dual { value, .. } = blend_codes::<F32x16, 2, false>(corners, [x, y]);
-    let sample = Dual { value, gradient: [F32x16::constant(0.0); 3] };
-    pipeline::add::<F32x16, STEP, 16, N, USE>(octave, sample, sums, GROUP);
+    let offset = offset::<USE, 2>(octave, point, GROUP);
+    pipeline::add_vector_in_plane::<F32x16, STEP, 16, N, USE>(octave, corners, offset, sums, GROUP);
 }
 
 /// The codes of both columns of each cell. The byte `group` of the lane `i` belongs to the point 16 · group + i.
