@@ -7,7 +7,7 @@ use crate::basis::cellular::{Cellular, Feature, Metric};
 use crate::basis::{Basis, Period, Tables, cellular, classic, improved, lattice, simplex, value, white};
 use crate::dispatch::{Evaluate, OverSlices, over_slices};
 use crate::number::{Dual, Real};
-use crate::simd::{self, FEW, InBatch, InSpace, Level, Terms};
+use crate::simd::{self, AtPoint, FEW, InBatch, Level, Terms};
 
 /// A noise: points in, numbers out. Cheap to clone; immutable.
 #[derive(Debug, Clone)]
@@ -19,7 +19,8 @@ pub struct Noise {
     tables: Arc<Tables>,
     /// Whether this is the noise that the kernels made by hand are for.
     has_kernel: bool,
-    in_space: InSpace<Noise>,
+    in_space: AtPoint<Noise>,
+    in_plane: AtPoint<Noise>,
     in_batch: Option<InBatch>,
 }
 
@@ -57,7 +58,8 @@ impl Noise {
             cellular: Cellular::default(),
             tables: Arc::new(Tables::new(seed)),
             has_kernel: false,
-            in_space: InSpace::by(Noise::value_in_space),
+            in_space: AtPoint::by(Noise::value_in_space),
+            in_plane: AtPoint::by(Noise::value_in_plane),
             in_batch: None,
         };
         noise.with_kernels()
@@ -66,9 +68,12 @@ impl Noise {
     /// With the kernels for its basis and period.
     fn with_kernels(mut self) -> Self {
         self.has_kernel = self.basis == Basis::Improved && self.period == [0.0; 4];
-        let level = self.has_kernel.then(simd::level);
-        self.in_space = level.and_then(InSpace::improved).unwrap_or(InSpace::by(Noise::value_in_space));
-        self.in_batch = level.and_then(InBatch::improved);
+        let level = simd::level();
+        let kernels = if self.has_kernel { AtPoint::improved(level) } else { AtPoint::generic(level) };
+        if let Some([in_space, in_plane]) = kernels {
+            (self.in_space, self.in_plane) = (in_space, in_plane);
+        }
+        self.in_batch = if self.has_kernel { InBatch::improved(level) } else { None };
         self
     }
 
@@ -238,8 +243,8 @@ impl Noise {
     pub fn at<const D: usize>(&self, point: [f32; D]) -> f32 {
         match point[..] {
             [x, y, z] => self.in_space.at(self, [x, y, z]),
+            [x, y] => self.in_plane.at(self, [x, y, 0.0]),
             // (A slice of space, with the same bits.)
-            [x, y] if self.has_kernel => self.in_space.at(self, [x, y, 0.0]),
             [x] if self.has_kernel => self.in_space.at(self, [x, 0.0, 0.0]),
             _ => self.value_at(&point),
         }
@@ -247,17 +252,34 @@ impl Noise {
 
     /// The value at one point in space in single precision, by the generic evaluation.
     fn value_in_space(&self, x: f32, y: f32, z: f32) -> f32 {
-        self.value([x, y, z])
+        self.value_in_space_here(x, y, z)
     }
 
-    /// The value at one point that is not in space in single precision, by the generic evaluation.
+    /// [`Noise::value_in_space`] in the plane. (The last coordinate is not read.)
+    fn value_in_plane(&self, x: f32, y: f32, _: f32) -> f32 {
+        self.value_in_plane_here(x, y)
+    }
+
+    /// [`Noise::value_in_space`], compiled with the instructions of the caller. (The coordinates one by one: an array would go through
+    /// memory, written by parts and read as a whole, for which the machine waits.)
+    #[inline(always)]
+    pub(crate) fn value_in_space_here(&self, x: f32, y: f32, z: f32) -> f32 {
+        self.octave_here::<f32, 3, false>([x, y, z], 1.0).value
+    }
+
+    /// [`Noise::value_in_plane`], as [`Noise::value_in_space_here`].
+    #[inline(always)]
+    pub(crate) fn value_in_plane_here(&self, x: f32, y: f32) -> f32 {
+        self.octave_here::<f32, 2, false>([x, y], 1.0).value
+    }
+
+    /// The value at one point of one or four dimensions in single precision, by the generic evaluation.
     #[inline(never)]
     fn value_at(&self, point: &[f32]) -> f32 {
         match *point {
             [x] => self.value([x]),
-            [x, y] => self.value([x, y]),
             [x, y, z, w] => self.value([x, y, z, w]),
-            _ => unreachable!("there are one, two or four dimensions"),
+            _ => unreachable!("two and three have functions of their own"),
         }
     }
 

@@ -292,29 +292,30 @@ macro_rules! kernel {
     };
 }
 
-/// A function of a point in space, chosen when the noise or sum is made: the fastest way for one point.
+/// A function of a point in space (or in the plane, where the last coordinate is not read), chosen when the noise or sum is made: the
+/// fastest way for one point.
 #[derive(Debug)]
-pub(crate) struct InSpace<T>(unsafe fn(&T, f32, f32, f32) -> f32);
+pub(crate) struct AtPoint<T>(unsafe fn(&T, f32, f32, f32) -> f32);
 
-impl<T> Clone for InSpace<T> {
+impl<T> Clone for AtPoint<T> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<T> Copy for InSpace<T> {}
+impl<T> Copy for AtPoint<T> {}
 
 /// It follows from the noise or sum.
-impl<T> PartialEq for InSpace<T> {
+impl<T> PartialEq for AtPoint<T> {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl<T> InSpace<T> {
+impl<T> AtPoint<T> {
     /// By any function.
     pub fn by(function: fn(&T, f32, f32, f32) -> f32) -> Self {
-        InSpace(function)
+        AtPoint(function)
     }
 
     /// Its value.
@@ -325,17 +326,25 @@ impl<T> InSpace<T> {
     }
 }
 
-impl InSpace<Noise> {
-    /// Improved noise without a period, with the instructions of a level, at most those of the machine, if there is a kernel for them.
-    pub fn improved(level: Level) -> Option<Self> {
-        kernel!(level, InSpace, single::improved)
+impl AtPoint<Noise> {
+    /// Improved noise without a period in space and in the plane, which is the slice of space where z is 0, with the instructions of a
+    /// level, at most those of the machine, if there is a kernel for them.
+    pub fn improved(level: Level) -> Option<[Self; 2]> {
+        kernel!(level, AtPoint, single::improved).map(|kernel| [kernel; 2])
+    }
+
+    /// Any noise in space and in the plane by its generic evaluation, with a level's instructions for single numbers, if it has
+    /// others than all machines.
+    pub fn generic(level: Level) -> Option<[Self; 2]> {
+        let in_space = kernel!(level, AtPoint, single::in_space)?;
+        Some([in_space, kernel!(level, AtPoint, single::in_plane)?])
     }
 }
 
-impl InSpace<Sum> {
-    /// Its octaves, added or their absolute values added: as [`InSpace::improved`].
+impl AtPoint<Sum> {
+    /// Its octaves, added or their absolute values added: as [`AtPoint::improved`].
     pub fn improved_octaves(level: Level) -> Option<Self> {
-        kernel!(level, InSpace, single::sum)
+        kernel!(level, AtPoint, single::sum)
     }
 }
 

@@ -15,7 +15,7 @@ pub(crate) use combine::Partial;
 use crate::filter::{self, Fade};
 use crate::noise::Noise;
 use crate::number::{Dual, Real};
-use crate::simd::{self, FEW, InSpace, Lanes, Level, MOST_STEP, Terms};
+use crate::simd::{self, AtPoint, FEW, Lanes, Level, MOST_STEP, Terms};
 
 /// A sum over K octaves of a noise: Σ gᵏ n(lᵏ p) for k from 0 to K − 1, with the lacunarity l and the gain g; or the same
 /// with another term for n: see [`Combine`].
@@ -33,7 +33,7 @@ pub struct Sum {
     lacunarity: f64,
     gain: f64,
     scales: Arc<Scales>,
-    in_space: InSpace<Sum>,
+    in_space: AtPoint<Sum>,
 }
 
 /// What follows from octaves, lacunarity and gain, octave by octave.
@@ -76,7 +76,7 @@ impl Sum {
         let octaves = octaves.min(MOST_OCTAVES);
         let scales = Arc::new(Scales::default());
         let level = (combine.is_plain() && noise.has_kernel()).then(simd::level);
-        let in_space = level.and_then(InSpace::improved_octaves).unwrap_or(InSpace::by(Sum::sum_in_space));
+        let in_space = level.and_then(AtPoint::improved_octaves).unwrap_or(AtPoint::by(Sum::sum_in_space));
         Sum { noise, combine, octaves, last: 1.0, lacunarity: 2.0, gain: 0.5, scales, in_space }.scaled()
     }
 

@@ -11,6 +11,7 @@ use crate::number::Real;
 use crate::simd::avx2::F32x8;
 use crate::simd::avx2::corners::column;
 use crate::simd::avx2::single::{Cell, Octaves, curve, noise, point};
+pub(in crate::simd) use crate::simd::avx2::single::{in_plane, in_space};
 use crate::simd::{Lanes, Vector};
 use crate::sum::Sum;
 
