@@ -352,14 +352,22 @@ impl Noise {
         const { assert!(D >= 1 && D <= 4, "a noise has one to four dimensions") };
         // Vectors must be inlined, one copy for each place; of the rest one copy is enough.
         if R::SCALAR {
-            self.octave_once::<R, D, G>(point, frequency)
+            let mut coordinates = [R::constant(0.0); 4];
+            coordinates[..D].copy_from_slice(&point);
+            let [x, y, z, w] = coordinates;
+            self.octave_once::<R, D, G>(x, y, z, w, frequency)
         } else {
             self.octave_here::<R, D, G>(point, frequency)
         }
     }
 
+    /// (The coordinates one by one, in registers: an array would be written to memory by parts and read as a whole, for which the
+    /// machine waits as long as for the rest.)
     #[inline(never)]
-    fn octave_once<R: Real, const D: usize, const G: bool>(&self, point: [R; D], frequency: f64) -> Dual<R, D> {
+    fn octave_once<R: Real, const D: usize, const G: bool>(&self, x: R, y: R, z: R, w: R, frequency: f64) -> Dual<R, D> {
+        let coordinates = [x, y, z, w];
+        let mut point = [x; D];
+        point.copy_from_slice(&coordinates[..D]);
         self.octave_here::<R, D, G>(point, frequency)
     }
 

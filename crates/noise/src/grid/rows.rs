@@ -272,7 +272,7 @@ struct State<'a, V: Real, const LANES: usize, const D: usize> {
     plane: usize,
     /// For each row of points what P and Q are multiplied by (in plain sums times the amplitude).
     factors: Vec<[f32; 4]>,
-    /// Their derivatives along y (in plain sums times the frequency).
+    /// Their derivatives along y, if there are slopes along it (in plain sums times the frequency).
     slope_factors: Vec<[f32; 4]>,
     /// What derivatives are multiplied by.
     steepness: f32,
@@ -309,8 +309,10 @@ impl<'a, V: Vector<LANES>, const LANES: usize, const D: usize> State<'a, V, LANE
         for (i, (low, high)) in y.from_low.iter().zip(&y.from_high).enumerate() {
             let (lower, upper) = (scale * (1.0 - y.curve[i]), scale * y.curve[i]);
             factors.push([lower, lower * low, upper, upper * high]);
-            let (slope, lower, upper) = (scale * steepness * y.slope[i], steepness * lower, steepness * upper);
-            slope_factors.push([-slope, lower - slope * low, slope, upper + slope * high]);
+            if D > 1 {
+                let (slope, lower, upper) = (scale * steepness * y.slope[i], steepness * lower, steepness * upper);
+                slope_factors.push([-slope, lower - slope * low, slope, upper + slope * high]);
+            }
         }
         let mut hashes: Vec<i32> = x.lattice.iter().map(hash).collect();
         hashes.resize(room, 0);
