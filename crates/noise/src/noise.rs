@@ -364,7 +364,14 @@ impl Noise {
     /// (The coordinates one by one, in registers: an array would be written to memory by parts and read as a whole, for which the
     /// machine waits as long as for the rest.)
     #[inline(never)]
-    fn octave_once<R: Real, const D: usize, const G: bool>(&self, x: R, y: R, z: R, w: R, frequency: f64) -> Dual<R, D> {
+    fn octave_once<R: Real, const D: usize, const G: bool>(
+        &self,
+        x: R,
+        y: R,
+        z: R,
+        w: R,
+        frequency: f64,
+    ) -> Dual<R, D> {
         let coordinates = [x, y, z, w];
         let mut point = [x; D];
         point.copy_from_slice(&coordinates[..D]);

@@ -207,15 +207,21 @@ fn single_points_have_the_bits_of_batches() {
     for &basis in Basis::ALL {
         for period in [[0; 3], [5, 0, 9]] {
             let Ok(noise) = Noise::new(basis, 2).with_period(period) else { continue };
-            let sum = Sum::new(noise.clone(), Combine::Absolute, 20);
-            for i in 0..2000 {
+            let octaves = |combine| if combine == Combine::Absolute { 20 } else { 5 };
+            let sums = Combine::ALL.iter().map(|&combine| Sum::new(noise.clone(), combine, octaves(combine)));
+            let sums: Vec<Sum> = sums.collect();
+            for i in 0..1000 {
                 let point = [x[i], y[i], z[i]];
                 assert!(same(noise.at(point), noise.value(point)), "{basis:?} at {point:?}");
                 assert!(same(noise.at([x[i], y[i]]), noise.value([x[i], y[i]])), "{basis:?} at {point:?}");
-                assert!(same(sum.at(point), sum.value(point)), "{basis:?} at {point:?}");
-                assert!(same(sum.at([x[i], y[i]]), sum.value([x[i], y[i]])), "{basis:?} at {point:?}");
                 assert!(same(noise.at([x[i]]), noise.value([x[i]])), "{basis:?} at {}", x[i]);
-                assert!(same(sum.at([x[i]]), sum.value([x[i]])), "{basis:?} at {}", x[i]);
+                for sum in &sums {
+                    assert!(same(sum.at(point), sum.value(point)), "{sum:?} at {point:?}");
+                    assert!(same(sum.at([x[i], y[i]]), sum.value([x[i], y[i]])), "{sum:?} at {point:?}");
+                    assert!(same(sum.at([x[i]]), sum.value([x[i]])), "{sum:?} at {}", x[i]);
+                    let four = [x[i], y[i], z[i], x[i + 1]];
+                    assert!(same(sum.at(four), sum.value(four)), "{sum:?} at {four:?}");
+                }
             }
         }
     }

@@ -12,6 +12,7 @@ pub use combine::Combine;
 use combine::HYBRID_OFFSET;
 pub(crate) use combine::Partial;
 
+use crate::basis::Basis;
 use crate::filter::{self, Fade};
 use crate::noise::Noise;
 use crate::number::{Dual, Real};
@@ -359,12 +360,28 @@ impl Sum {
         self.sum_at([x, y, z])
     }
 
-    /// The sum at one point by the generic evaluation, with its octaves in lanes if they can be.
+    /// The sum at one point: with its octaves in lanes if they can be, or else one by one.
     #[inline(never)]
     fn sum_at<const D: usize>(&self, point: [f32; D]) -> f32 {
-        let in_lanes =
-            if self.combine.is_plain() { self.noise.sum_at(simd::level(), &self.terms(), point) } else { None };
-        in_lanes.unwrap_or_else(|| self.value(point))
+        let noise = &self.noise;
+        // (Classic noise would gather in lanes, which takes longer.)
+        if self.combine.is_plain()
+            && (noise.basis() != Basis::Classic || D == 4)
+            && let Some(sum) = noise.sum_at(simd::level(), &self.terms(), point)
+        {
+            return sum;
+        }
+        if D == 4 || *noise.period() != [0.0; 4] {
+            return self.value(point);
+        }
+        // (Single points have faster ways than the generic evaluation, with the same bits.)
+        let mut partial = Partial::<f32, D>::new();
+        for (frequency, amplitude) in self.frequencies_and_amplitudes() {
+            let value = noise.at(point.map(|coordinate| coordinate * frequency as f32));
+            let octave = self.combine.fold::<f32, D, false>(Dual { value, gradient: [0.0; D] });
+            partial.add::<false>(self.combine, frequency, amplitude, octave);
+        }
+        partial.sum.value
     }
 
     /// The values at many points, each with its footprint: the same bits as [`Sum::value_filtered`] in single precision.
