@@ -250,26 +250,17 @@ impl Noise {
         }
     }
 
-    /// The value at one point in space in single precision, by the generic evaluation.
-    fn value_in_space(&self, x: f32, y: f32, z: f32) -> f32 {
-        self.value_in_space_here(x, y, z)
-    }
-
-    /// [`Noise::value_in_space`] in the plane. (The last coordinate is not read.)
-    fn value_in_plane(&self, x: f32, y: f32, _: f32) -> f32 {
-        self.value_in_plane_here(x, y)
-    }
-
-    /// [`Noise::value_in_space`], compiled with the instructions of the caller. (The coordinates one by one: an array would go through
-    /// memory, written by parts and read as a whole, for which the machine waits.)
+    /// The value at one point in space in single precision, by the generic evaluation, compiled with the instructions of the caller.
+    /// (The coordinates one by one: an array would go through memory, written by parts and read as a whole, for which the machine
+    /// waits.)
     #[inline(always)]
-    pub(crate) fn value_in_space_here(&self, x: f32, y: f32, z: f32) -> f32 {
+    pub(crate) fn value_in_space(&self, x: f32, y: f32, z: f32) -> f32 {
         self.octave_here::<f32, 3, false>([x, y, z], 1.0).value
     }
 
-    /// [`Noise::value_in_plane`], as [`Noise::value_in_space_here`].
+    /// [`Noise::value_in_space`] in the plane. (The last coordinate is not read.)
     #[inline(always)]
-    pub(crate) fn value_in_plane_here(&self, x: f32, y: f32) -> f32 {
+    pub(crate) fn value_in_plane(&self, x: f32, y: f32, _: f32) -> f32 {
         self.octave_here::<f32, 2, false>([x, y], 1.0).value
     }
 

@@ -110,10 +110,13 @@ impl Grid {
         let lengths = self.lengths();
         let values: Bound<'py, PyArrayDyn<f32>> = points::array(py, &lengths)?;
         let width = if gradient { self.dimensions() } else { 0 };
-        let slopes: Bound<'py, PyArrayDyn<f32>> = points::array(py, &[&lengths[..], &[width]].concat())?;
+        let slopes: Option<Bound<'py, PyArrayDyn<f32>>> =
+            if gradient { Some(points::array(py, &[&lengths[..], &[width]].concat())?) } else { None };
         {
-            let (mut values, mut slopes) = (values.readwrite(), slopes.readwrite());
-            let (values, slopes) = (values.as_slice_mut()?, slopes.as_slice_mut()?);
+            let mut values = values.readwrite();
+            let values = values.as_slice_mut()?;
+            let mut slopes = slopes.as_ref().map(|slopes| slopes.readwrite());
+            let slopes = slopes.as_mut().map_or(Ok(&mut [][..]), |slopes| slopes.as_slice_mut())?;
             if !values.is_empty() {
                 let raster = Raster::new(field, self.axes.clone());
                 let plane = raster.plane_len();
@@ -134,7 +137,7 @@ impl Grid {
                 })?;
             }
         }
-        if gradient { Ok((values, slopes).into_pyobject(py)?.into_any()) } else { Ok(values.into_any()) }
+        points::with_slopes(py, values.into_any(), slopes)
     }
 }
 
@@ -142,9 +145,7 @@ impl Grid {
 fn fill_with_gradient<const D: usize>(raster: &Raster, planes: Range<usize>, values: &mut [f32], slopes: &mut [f32]) {
     let mut columns: [Vec<f32>; D] = std::array::from_fn(|_| vec![0.0; values.len()]);
     raster.fill_with_gradient(planes, values, columns.each_mut().map(Vec::as_mut_slice));
-    for (i, slope) in slopes.as_chunks_mut().0.iter_mut().enumerate() {
-        *slope = columns.each_ref().map(|column| column[i]);
-    }
+    points::interleave(columns.each_ref().map(Vec::as_slice), slopes);
 }
 
 /// The coordinates along an axis.

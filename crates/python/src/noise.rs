@@ -223,16 +223,10 @@ fn evaluate<'py, T: Number, const D: usize>(
             let mut columns = [[T::default(); CHUNK]; D];
             let parts = columns.each_mut().map(|column| &mut column[..values.len()]);
             T::fill(field, points, values, Some(parts));
-            for (i, slope) in slopes.chunks_exact_mut(D).enumerate() {
-                slope.iter_mut().zip(&columns).for_each(|(part, column)| *part = column[i]);
-            }
+            points::interleave(columns.each_ref().map(|column| &column[..values.len()]), slopes);
         })?;
     }
-    let values = points::array_or_number(values)?;
-    match slopes {
-        None => Ok(values),
-        Some(slopes) => Ok((values, slopes).into_pyobject(py)?.into_any()),
-    }
+    points::with_slopes(py, points::array_or_number(values)?, slopes)
 }
 
 /// What the libraries declare of the noises: for each basis and each sum its name, its term, a sentence, the formula and the

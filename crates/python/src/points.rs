@@ -144,11 +144,30 @@ pub fn array_or_number<'py, T: Element>(array: Bound<'py, PyArrayDyn<T>>) -> PyR
     if array.ndim() == 0 { array.get_item(()) } else { Ok(array.into_any()) }
 }
 
+/// Values, and with them their gradients, if there are any.
+pub fn with_slopes<'py, T: Element>(
+    py: Python<'py>,
+    values: Bound<'py, PyAny>,
+    slopes: Option<Bound<'py, PyArrayDyn<T>>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match slopes {
+        None => Ok(values),
+        Some(slopes) => Ok((values, slopes).into_pyobject(py)?.into_any()),
+    }
+}
+
 /// A coordinate of a point.
 pub trait Coordinate: Element + Copy + Default {
     /// Takes points apart into columns of as many numbers.
     fn deinterleave<const D: usize>(points: &[[Self; D]], columns: [&mut [Self]; D]) {
         gather(points, columns);
+    }
+}
+
+/// The columns as points: the first entry of each, the second of each, and so on.
+pub fn interleave<T: Copy, const D: usize>(columns: [&[T]; D], points: &mut [T]) {
+    for (i, point) in points.as_chunks_mut::<D>().0.iter_mut().enumerate() {
+        *point = columns.map(|column| column[i]);
     }
 }
 

@@ -314,8 +314,7 @@ impl Noise {
         values: &mut [f32],
         gradient: [&mut [f32]; D],
     ) {
-        let raster = Raster::new(self.clone(), grid.axes());
-        raster.fill_with_gradient(0..raster.planes(), values, gradient);
+        fill_all_with_gradient(&Raster::new(self.clone(), grid.axes()), values, gradient);
     }
 }
 
@@ -346,8 +345,7 @@ impl Sum {
         values: &mut [f32],
         gradient: [&mut [f32]; D],
     ) {
-        let raster = Raster::new(self.clone(), grid.axes());
-        raster.fill_with_gradient(0..raster.planes(), values, gradient);
+        fill_all_with_gradient(&Raster::new(self.clone(), grid.axes()), values, gradient);
     }
 
     /// The sums on a grid as they look through samples of the side `footprint`, x first, then y, and so on: as
@@ -370,8 +368,7 @@ impl Sum {
         values: &mut [f32],
         gradient: [&mut [f32]; D],
     ) {
-        let raster = Raster::filtered(self.clone(), grid.axes(), footprint);
-        raster.fill_with_gradient(0..raster.planes(), values, gradient);
+        fill_all_with_gradient(&Raster::filtered(self.clone(), grid.axes(), footprint), values, gradient);
     }
 }
 
@@ -380,4 +377,10 @@ impl Sum {
 fn fill_all<const D: usize>(raster: &Raster, level: Level, grid: &Grid<D>, values: &mut [f32]) {
     assert_eq!(values.len(), grid.len(), "there is a value for each point of the grid");
     raster.fill_at(level, 0..raster.planes(), values);
+}
+
+/// [`fill_all`], and the derivatives.
+#[track_caller]
+fn fill_all_with_gradient<const D: usize>(raster: &Raster, values: &mut [f32], gradient: [&mut [f32]; D]) {
+    raster.fill_with_gradient(0..raster.planes(), values, gradient);
 }

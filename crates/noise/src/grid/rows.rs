@@ -465,19 +465,16 @@ impl<'a, V: Vector<LANES>, const LANES: usize, const D: usize> State<'a, V, LANE
         let columns = self.columns.iter_mut().zip(&self.windows).enumerate();
         for ((i, (column, &window)), ((low, high), u)) in columns.zip(offsets) {
             let (offsets, u) = ([V::load(low), V::load(high)], V::load(u));
-            let [p, q] = self.lattice.ends(window, offsets);
+            let [p, q, bx] = self.lattice.ends(window, offsets);
             (column[2], column[3]) = (lerp(u, p[0], p[1]), lerp(u, q[0], q[1]));
             if D > 0 {
                 let slope = V::load(&x.slope.as_chunks().0[i]);
-                let (start, places) = window;
-                let b0 = pick::<V, LANES>(&self.lattice.bx, start, places);
-                let b1 = pick::<V, LANES>(&self.lattice.bx, start + 1, places);
                 let along_x = &mut self.along_x[i];
-                along_x[2] = steepness * (lerp(u, b0, b1) + slope * (p[1] - p[0]));
+                along_x[2] = steepness * (lerp(u, bx[0], bx[1]) + slope * (p[1] - p[0]));
                 along_x[3] = steepness * (slope * (q[1] - q[0]));
             }
             if D > 2 {
-                let [p, q] = self.lattice_along_z.ends(window, offsets);
+                let [p, q, _] = self.lattice_along_z.ends(window, offsets);
                 let along_z = &mut self.along_z[i];
                 (along_z[2], along_z[3]) = (lerp(u, p[0], p[1]), lerp(u, q[0], q[1]));
             }
@@ -520,18 +517,19 @@ impl Lattice {
         }
     }
 
-    /// P and Q at the lattice points left and right of points in a window, seen from these offsets.
+    /// P, Q and the slopes along x at the lattice points left and right of points in a window, seen from these offsets.
     #[inline(always)]
     fn ends<V: Vector<LANES>, const LANES: usize>(
         &self,
         (start, places): (usize, V::Int),
         [low, high]: [V; 2],
-    ) -> [[V; 2]; 2] {
+    ) -> [[V; 2]; 3] {
         let Lattice { bx, by, c } = self;
-        let left = pick::<V, LANES>(c, start, places) + pick::<V, LANES>(bx, start, places) * low;
-        let right = pick::<V, LANES>(c, start + 1, places) + pick::<V, LANES>(bx, start + 1, places) * high;
+        let (bx0, bx1) = (pick::<V, LANES>(bx, start, places), pick::<V, LANES>(bx, start + 1, places));
+        let left = pick::<V, LANES>(c, start, places) + bx0 * low;
+        let right = pick::<V, LANES>(c, start + 1, places) + bx1 * high;
         let (by0, by1) = (pick::<V, LANES>(by, start, places), pick::<V, LANES>(by, start + 1, places));
-        [[left, right], [by0, by1]]
+        [[left, right], [by0, by1], [bx0, bx1]]
     }
 }
 

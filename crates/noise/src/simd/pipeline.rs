@@ -319,36 +319,23 @@ fn sums<'a, const STEP: usize, const N: usize>(outputs: &'a mut [&mut [f32]; N],
 
 /// Adds an octave at the points of one vector of a step, from the corners' codes and the offsets in the cells.
 #[inline(always)]
-pub(super) fn add_vector<V: Vector<LANES>, const STEP: usize, const LANES: usize, const N: usize, const USE: u8>(
-    octave: &Octave,
-    codes: Corners<V::Int>,
-    offset: [V; 3],
-    sums: &mut Sums<STEP, N>,
-    vector: usize,
-) {
-    let sample =
-        if N == 4 { blend_codes::<V, 3, true>(codes, offset) } else { blend_codes::<V, 3, false>(codes, offset) };
-    add::<V, STEP, LANES, 3, N, USE>(octave, sample, sums, vector);
-}
-
-/// [`add_vector`] in the plane.
-#[inline(always)]
-pub(super) fn add_vector_in_plane<
+pub(super) fn add_vector<
     V: Vector<LANES>,
     const STEP: usize,
     const LANES: usize,
+    const D: usize,
     const N: usize,
     const USE: u8,
 >(
     octave: &Octave,
     codes: Corners<V::Int>,
-    [x, y, _]: [V; 3],
+    offset: [V; D],
     sums: &mut Sums<STEP, N>,
     vector: usize,
 ) {
     let sample =
-        if N == 3 { blend_codes::<V, 2, true>(codes, [x, y]) } else { blend_codes::<V, 2, false>(codes, [x, y]) };
-    add::<V, STEP, LANES, 2, N, USE>(octave, sample, sums, vector);
+        if N > 1 { blend_codes::<V, D, true>(codes, offset) } else { blend_codes::<V, D, false>(codes, offset) };
+    add::<V, STEP, LANES, D, N, USE>(octave, sample, sums, vector);
 }
 
 /// Adds an octave's noise at the points of one vector of a step.

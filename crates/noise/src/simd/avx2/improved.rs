@@ -276,10 +276,11 @@ fn add_vector<const USE: u8, const N: usize, const D: usize>(
 ) {
     let (codes, offset) = locate::<USE>(codes, octave, point);
     if D == 2 {
-        return pipeline::add_vector_in_plane::<F32x8, LANES, LANES, N, USE>(octave, by_corner(codes), offset, sums, 0);
+        let [x, y, _] = offset;
+        return pipeline::add_vector::<F32x8, LANES, LANES, 2, N, USE>(octave, by_corner(codes), [x, y], sums, 0);
     }
     if N == 4 {
-        return pipeline::add_vector::<F32x8, LANES, LANES, N, USE>(octave, by_corner(codes), offset, sums, 0);
+        return pipeline::add_vector::<F32x8, LANES, LANES, 3, N, USE>(octave, by_corner(codes), offset, sums, 0);
     }
     let value = blend(codes, offset, &mut Nothing);
     pipeline::add::<F32x8, LANES, LANES, 3, N, USE>(octave, Dual { value, gradient: [value; 3] }, sums, 0);

@@ -27,13 +27,13 @@ pub(in crate::simd) fn improved(of: &Noise, x: f32, y: f32, z: f32) -> f32 {
 /// Any noise at a point in space, one number at a time: what rounds down, say, is an instruction here and a call on older machines.
 #[target_feature(enable = "avx2,fma")]
 pub(in crate::simd) fn in_space(of: &Noise, x: f32, y: f32, z: f32) -> f32 {
-    of.value_in_space_here(x, y, z)
+    of.value_in_space(x, y, z)
 }
 
 /// [`in_space`] in the plane.
 #[target_feature(enable = "avx2,fma")]
-pub(in crate::simd) fn in_plane(of: &Noise, x: f32, y: f32, _: f32) -> f32 {
-    of.value_in_plane_here(x, y)
+pub(in crate::simd) fn in_plane(of: &Noise, x: f32, y: f32, z: f32) -> f32 {
+    of.value_in_plane(x, y, z)
 }
 
 /// The sum at a point.

@@ -259,7 +259,7 @@ fn add_vector<const GROUP: usize, const USE: u8, const N: usize>(
     sums: &mut Sums<STEP, N>,
 ) {
     let offset = offset::<USE, 3>(octave, point, GROUP);
-    pipeline::add_vector::<F32x16, STEP, 16, N, USE>(octave, corners::<GROUP>(codes), offset, sums, GROUP);
+    pipeline::add_vector::<F32x16, STEP, 16, 3, N, USE>(octave, corners::<GROUP>(codes), offset, sums, GROUP);
 }
 
 /// The codes of the corners at sixteen of 64 points. (Of each the low four bits count.)
@@ -277,8 +277,8 @@ fn corners<const GROUP: usize>(codes: &[__m512i; 4]) -> Corners<I32x16> {
 
 /// The offsets in their cells of sixteen of 64 points, along the first `D` axes.
 #[inline(always)]
-pub(super) fn offset<const USE: u8, const D: usize>(octave: &Octave, point: Point<STEP>, group: usize) -> [F32x16; 3] {
-    let mut offset = [F32x16::constant(0.0); 3];
+pub(super) fn offset<const USE: u8, const D: usize>(octave: &Octave, point: Point<STEP>, group: usize) -> [F32x16; D] {
+    let mut offset = [F32x16::constant(0.0); D];
     for axis in 0..D {
         let position = load::<USE>(point[axis], group, octave.frequency);
         offset[axis] = position - position.floor();

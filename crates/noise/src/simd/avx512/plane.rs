@@ -73,7 +73,7 @@ fn add_vector<const GROUP: usize, const USE: u8, const N: usize>(
         corners[column + 2] = I32x16(codes[column]).shift_right(bit + 4);
     }
     let offset = offset::<USE, 2>(octave, point, GROUP);
-    pipeline::add_vector_in_plane::<F32x16, STEP, 16, N, USE>(octave, corners, offset, sums, GROUP);
+    pipeline::add_vector::<F32x16, STEP, 16, 2, N, USE>(octave, corners, offset, sums, GROUP);
 }
 
 /// The codes of both columns of each cell. The byte `group` of the lane `i` belongs to the point 16 · group + i.
